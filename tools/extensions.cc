@@ -30,6 +30,9 @@
 #ifdef ISPACE_HAS_EXPECT
 #include "extensions/expect/expectations.h"
 #endif
+#ifdef ISPACE_HAS_GAZEBO
+#include "extensions/gazebo/gazebo.h"
+#endif
 #ifdef ISPACE_HAS_HEADS
 #include "extensions/heads/head.h"
 #include "extensions/heads/head_role.h"
@@ -121,6 +124,9 @@ bool addFormats() {
 #ifdef ISPACE_HAS_CURTAINS
     addSceneSchemas(curtainSchemas());
     addCurtains();
+#endif
+#ifdef ISPACE_HAS_GAZEBO
+    addImporters(gazeboImporters());
 #endif
 #ifdef ISPACE_HAS_HEADS
     addSceneSchemas(headSchemas());

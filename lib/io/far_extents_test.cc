@@ -158,30 +158,5 @@ TEST(MeshSpelling, CapitalsInStlAndBlanksInCollada) {
     EXPECT_EQ(corners("blanks.dae", collada("\n   ")), wanted);
 }
 
-TEST(SdfMeshes, BadOnesAreLeftOut) {
-    const testing::TestFolder folder;
-    writeAll(folder.file("bad.dae"), "<COLLADA>");
-    std::string world = "<sdf version='1.7'><world name='w'>";
-    const auto box = [&](double x, double y, double length, double width) {
-        world += "<model name='wall'><static>1</static><pose>" + formatDouble(x) + ' ' +
-                 formatDouble(y) +
-                 " 1 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>" +
-                 formatDouble(length) + ' ' + formatDouble(width) +
-                 " 2</size></box></geometry></collision></link></model>";
-    };
-    box(3, 0, 6.2, 0.2);
-    box(3, 4, 6.2, 0.2);
-    box(0, 2, 0.2, 4.2);
-    box(6, 2, 0.2, 4.2);
-    world +=
-        "<model name='desk'><pose>3 2 0 0 0 0</pose><link name='l'><collision name='c'><geometry>"
-        "<mesh><uri>bad.dae</uri></mesh></geometry></collision></link></model></world></sdf>";
-    const Document document = parseDocument(world, folder.file("w.sdf"), {}, sceneSchemas());
-    EXPECT_EQ(countOf(document, "mesh"), 0U);
-    EXPECT_GT(environmentOf(document).indoor().area(), 20);
-    EXPECT_NE(warningsOf(document).find("mesh file `bad.dae` is left out: "), std::string::npos)
-        << warningsOf(document);
-}
-
 }  // namespace
 }  // namespace ispace

@@ -213,7 +213,6 @@ constexpr Importer kFormatsByMagic[] = {
     importer<isGridMap, readGridMap>("a MovingAI map"),
     importer<isGalleryFile, readGalleryFile>("an art gallery", false),
     importer<isSvg, readSvg>("SVG"),
-    importer<isSdf, readSdf>("SDF"),
     {"IFC", true, [](const ImportSource& source) { return isIfc(source.bytes); },
      [](const ImportSource& source) {
          return readIfc(source.bytes, source.operand, source.options, source.schemas);

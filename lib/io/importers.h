@@ -72,7 +72,7 @@ struct ImportOptions {
     std::vector<std::string> wall_layers;    ///< globs; empty: every layer not named otherwise
     std::vector<std::string> door_layers;    ///< globs; default: no layer
     std::vector<std::string> window_layers;  ///< globs; default: no layer
-    std::vector<std::string> model_folders;  ///< of SDF, see SdfFiles; relative to the current one
+    std::vector<std::string> model_folders;  ///< of SDF; relative to the current one
     bool points = false;                     ///< points of an ARIA map become obstacles
     WorkLimit max_work;                      ///< see Budget
     IncludeFiles includes = IncludeFiles::InFolder;  ///< of YAML
@@ -110,7 +110,7 @@ struct Importer {
 };
 
 /// Returns the row of a format that its bytes alone tell:
-/// `importer<isSdf, readSdf>("SDF")`.
+/// `importer<isDxf, readDxf>("DXF")`.
 template <bool (*kRecognises)(std::string_view),
           Document (*kRead)(std::string_view, const std::string&, const ImportOptions&,
                             const Schemas&)>
@@ -254,23 +254,6 @@ bool isSvg(std::string_view bytes);
 /// \throws FormatError with the line: damaged, no size, no line on the layers of walls, coordinates
 /// beyond 900 km, elements nested too deep, more than ImportOptions::max_work
 Document readSvg(std::string_view bytes, const std::string& name, const ImportOptions& options,
-                 const Schemas& schemas);
-
-/// Returns true for XML with the root `sdf`, see xmlRootName().
-bool isSdf(std::string_view bytes);
-
-/// Reads a world of SDF (Gazebo), or a model: the shapes of readSdfShapes().
-///
-/// - Upright boxes on the floor, at most 0.5 m thick, three times as long and twice as high, become
-/// walls; ends within the thickness of another wall are moved onto its mid-line, and the
-/// room is chosen as in readDxf(). Other upright boxes become cubes, upright cylinders cylinders,
-/// polylines on the floor closed fences.
-/// - Meshes become `mesh` records if their files are there (see SdfFiles), and are else left out
-/// with a warning. Where boxes and polylines enclose no room, or with ImportOptions::slice_walls,
-/// those that bound one are cut into walls, see wallsAmong().
-/// - Planes, slabs of floor, tilted shapes and all others are skipped, with a note.
-/// \throws FormatError as readSdfShapes(), and if no shape is left
-Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
                  const Schemas& schemas);
 
 /// Returns true if the bytes are YAML with the top-level keys `image` and `resolution`.

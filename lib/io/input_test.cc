@@ -39,7 +39,7 @@ TEST(Input, ToldApartByContent) {
 
 TEST(Input, SaysWhatItWanted) {
     const std::string wanted =
-        "wanted DXF, GLB, HouseExpo JSON, IFC, SDF, SVG, YAML, `#3dm 1`, `#env 1`, a MovingAI map, "
+        "wanted DXF, GLB, HouseExpo JSON, IFC, SVG, YAML, `#3dm 1`, `#env 1`, a MovingAI map, "
         "a ROS map, a mesh, a picture, a point cloud, an ARIA map or an art gallery";
     EXPECT_EQ(errorOf(""), "room: error: empty input: " + wanted);
     EXPECT_EQ(errorOf(" \n\r\n"), "room: error: empty input: " + wanted);

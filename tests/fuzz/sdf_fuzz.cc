@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "io/importers.h"
+#include "extensions/gazebo/gazebo.h"
 #include "scene/placement_schemas.h"
 
 namespace {

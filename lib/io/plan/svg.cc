@@ -24,8 +24,8 @@
 #include "io/plan/drawing_unit.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/svg.h"
-#include "io/sdf/sdf_files.h"
 #include "io/unread.h"
+#include "io/xml_file.h"
 
 namespace ispace {
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/io/sdf: writers of worlds (SDF) and robots (URDF); their bodies as parts.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/worlds/world_import.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,9 +25,7 @@
 #include "io/mesh/mesh_file.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/plan_rooms.h"
-#include "io/sdf/sdf_import.h"
 #include "io/sdf/sdf_parts.h"
-#include "io/sdf/sdf_shapes.h"
 #include "io/unread.h"
 
 namespace ispace {
@@ -38,10 +38,10 @@ constexpr double kMeshCut = 0.3;    // metres: over most feet, under most sills
 /// Doors, in metres; wider ones have two leaves.
 constexpr double kMinDoor = 0.6, kMaxDoor = 2, kDoorHeight = 2;
 
-class SdfImporter {
+class WorldImporter {
   public:
-    SdfImporter(SdfWorld world, const std::string& name, const ImportOptions& options,
-                const Schemas& schemas, Budget& work, ImportRecords& out)
+    WorldImporter(WorldShapes world, const std::string& name, const ImportOptions& options,
+                  const Schemas& schemas, Budget& work, ImportRecords& out)
         : world_(std::move(world)),
           name_(name),
           options_(options),
@@ -60,7 +60,7 @@ class SdfImporter {
         chooseRoom();
         // The walls may be in a file that is missing.
         if (world_.missing && regions_.empty()) throw FormatError(*world_.missing);
-        for (const SdfBlock& block : blocks_)
+        for (const WorldBlock& block : blocks_)
             if (isOutside(block))
                 ++blocks_outside_;
             else
@@ -81,18 +81,18 @@ class SdfImporter {
     }
 
     void sortShapes() {
-        for (SdfShape& shape : world_.shapes) {
-            if (auto* polyline = std::get_if<SdfPolyline>(&shape.shape))
+        for (WorldShape& shape : world_.shapes) {
+            if (auto* polyline = std::get_if<WorldPolyline>(&shape.shape))
                 addPolyline(shape, *polyline);
-            else if (const auto* box = std::get_if<SdfBox>(&shape.shape))
+            else if (const auto* box = std::get_if<WorldBox>(&shape.shape))
                 sortBlock(blockOf(shape, *box), shape, box->size);
-            else if (const auto* cylinder = std::get_if<SdfCylinder>(&shape.shape))
+            else if (const auto* cylinder = std::get_if<WorldCylinder>(&shape.shape))
                 sortBlock(blockOf(shape, *cylinder), shape,
                           {2 * cylinder->radius, 2 * cylinder->radius, cylinder->length});
         }
     }
 
-    void leaveOut(const char* kind, const SdfShape& shape, const Box2& extent) {
+    void leaveOut(const char* kind, const WorldShape& shape, const Box2& extent) {
         ++world_.left_out[kind];
         world_.unread.push_back({kind,
                                  {},
@@ -103,7 +103,7 @@ class SdfImporter {
     }
 
     /// \param size of the box around it
-    void sortBlock(const std::optional<SdfBlock>& block, const SdfShape& shape,
+    void sortBlock(const std::optional<WorldBlock>& block, const WorldShape& shape,
                    const std::array<double, 3>& size) {
         if (!block)
             leaveOut("box or cylinder that leans", shape, boundsOf(shape, size));
@@ -117,7 +117,7 @@ class SdfImporter {
 
     /// Adds a shape extruded from the floor as a closed fence, which excludes its inside from the
     /// room.
-    void addPolyline(const SdfShape& shape, const SdfPolyline& polyline) {
+    void addPolyline(const WorldShape& shape, const WorldPolyline& polyline) {
         const Eigen::Isometry3d& pose = shape.world_from_shape;
         const double bottom = pose.translation().z();
         const double foot = options_.slice_walls.value_or(kMaxFoot);
@@ -152,15 +152,15 @@ class SdfImporter {
         }
         if (options_.slice_top) failFile(name_, "meshes are cut at one height: --slice-walls M");
         const double height = options_.slice_walls.value_or(kMeshCut);
-        std::vector<SdfMeshCut> cuts = cutMeshes(world_.shapes, name_, height,
-                                                 {options_.max_work.max, &work_}, schemas_, files_);
+        std::vector<WorldMeshCut> cuts = cutMeshes(
+            world_.shapes, name_, height, {options_.max_work.max, &work_}, schemas_, files_);
         if (!cuts.empty()) cuts = wallsAmong(std::move(cuts), lines, work_, choose);
         std::vector<Segment2> all = lines;
-        for (const SdfMeshCut& cut : cuts)
+        for (const WorldMeshCut& cut : cuts)
             for (const Segment2& piece : pathPieces(cut.wall.paths)) all.push_back(piece);
         if (!options_.slice_walls && choose(all).regions.empty()) return;  // cutting would not help
         uncut_.reset();
-        for (SdfMeshCut& cut : cuts) {
+        for (WorldMeshCut& cut : cuts) {
             walls_.push_back(std::move(cut.wall));
             is_cut_.insert(cut.shape);
         }
@@ -176,12 +176,12 @@ class SdfImporter {
 
     void addMeshes() {
         for (std::size_t i = 0; i < world_.shapes.size(); ++i)
-            if (const auto* mesh = std::get_if<SdfMesh>(&world_.shapes[i].shape);
+            if (const auto* mesh = std::get_if<WorldMesh>(&world_.shapes[i].shape);
                 mesh != nullptr && !is_cut_.contains(i))
                 addMesh(world_.shapes[i], *mesh);
     }
 
-    void addMesh(const SdfShape& shape, const SdfMesh& mesh) {
+    void addMesh(const WorldShape& shape, const WorldMesh& mesh) {
         const Eigen::Isometry3d& pose = shape.world_from_shape;
         const auto [scale, scale_y, scale_z] = mesh.scale;
         const bool is_even = scale == scale_y && scale == scale_z;
@@ -203,14 +203,14 @@ class SdfImporter {
         record.set("at", placeOf(floorOf(place), place.z()));
         record.set("heading", headingOf(pose.linear().col(0)).degrees());
         record.set("file", *mesh.file);
-        record.set("up", sdfMeshUp(*mesh.file));
+        record.set("up", worldMeshUp(*mesh.file));
         record.set("scale", scale);
         if (*loaded != nullptr) record.setMesh(*loaded);
         ++meshes_;
     }
 
     /// Returns the bounds of a mesh on the floor; empty if its file is not read.
-    Box2 extentOf(const SdfShape& shape, const SdfMesh& mesh) {
+    Box2 extentOf(const WorldShape& shape, const WorldMesh& mesh) {
         Box2 extent;
         if (!mesh.file) return extent;
         const auto loaded = loadedMesh(*mesh.file);
@@ -232,7 +232,7 @@ class SdfImporter {
         try {
             work_.grant(openRegular(path).size);
             const MeshFiles::Loaded& loaded =
-                files_.load(path, {sdfMeshUp(file), false, {options_.max_work.max, &work_}});
+                files_.load(path, {worldMeshUp(file), false, {options_.max_work.max, &work_}});
             out_.source(path);
             for (const std::string& side : loaded.side_files) out_.source(side);
             known->second = loaded.mesh;
@@ -257,7 +257,7 @@ class SdfImporter {
     /// The lines of all walls, then of all fences.
     [[nodiscard]] std::vector<Segment2> ownLines() const {
         std::vector<Segment2> lines;
-        for (const SdfWall& wall : walls_)
+        for (const WorldWall& wall : walls_)
             for (const Segment2& piece : pathPieces(wall.paths)) lines.push_back(piece);
         for (const Fence& fence : fences_)
             for (const Segment2& piece : pathPieces({fence.path})) lines.push_back(piece);
@@ -308,7 +308,7 @@ class SdfImporter {
             kept += static_cast<std::ptrdiff_t>(count);
             return withPieces(paths, these);
         };
-        for (SdfWall& wall : walls_) {
+        for (WorldWall& wall : walls_) {
             wall.paths = take(wall.paths);
             if (wall.paths.empty())
                 ++outside_;
@@ -343,7 +343,7 @@ class SdfImporter {
 
     /// Returns true if neither its middle nor a corner lies in a room, nor a corner of a room in
     /// it.
-    [[nodiscard]] bool isOutside(const SdfBlock& block) const {
+    [[nodiscard]] bool isOutside(const WorldBlock& block) const {
         if (regions_.empty()) return false;
         Polygon places = rectangle(block.center, block.length, block.width, block.heading);
         const Polygon footprint = places;
@@ -368,7 +368,7 @@ class SdfImporter {
     };
 
     /// Adds a box as a wall, the cut of a mesh as fences.
-    void addWall(const SdfWall& wall) {
+    void addWall(const WorldWall& wall) {
         for (const PlanPath& path : wall.paths) {
             const std::string id = out_.freeId(wall.model, "wall");
             if (path.closed || path.points.size() > 2)
@@ -386,7 +386,7 @@ class SdfImporter {
         out_.last().set("thickness", 0.0);
     }
 
-    void addBlock(const SdfBlock& block) {
+    void addBlock(const WorldBlock& block) {
         Record& record = out_.add(block.is_round ? "cylinder" : "cube", block.line);
         record.set("id", out_.freeId(block.model, block.is_round ? "cylinder" : "cube"));
         const double bottom = std::max(0.0, block.bottom);
@@ -399,9 +399,10 @@ class SdfImporter {
     /// True if enough boxes look like walls, at any height, to enclose a room.
     [[nodiscard]] bool hasWalls() const {
         constexpr std::size_t kMinPoints = 3;
-        const auto boxes = std::count_if(blocks_.begin(), blocks_.end(), [](const SdfBlock& block) {
-            return isWall(block, block.bottom + (block.top - block.bottom) / 2);
-        });
+        const auto boxes =
+            std::count_if(blocks_.begin(), blocks_.end(), [](const WorldBlock& block) {
+                return isWall(block, block.bottom + (block.top - block.bottom) / 2);
+            });
         return walls_.size() + fences_.size() + static_cast<std::size_t>(boxes) >= kMinPoints;
     }
 
@@ -430,17 +431,17 @@ class SdfImporter {
                   ", meshes: " + std::to_string(meshes_));
     }
 
-    SdfWorld world_;
+    WorldShapes world_;
     const std::string& name_;
     const ImportOptions& options_;
     const Schemas& schemas_;
     Budget& work_;
     ImportRecords& out_;
-    std::vector<SdfWall> walls_;
+    std::vector<WorldWall> walls_;
     std::set<std::size_t> is_cut_;  // shapes that are walls now
     std::optional<Trial> uncut_;    // rooms of the boxes and polylines, without meshes
     std::vector<Fence> fences_;
-    std::vector<SdfBlock> blocks_;
+    std::vector<WorldBlock> blocks_;
     std::map<std::string, std::size_t> missing_;
     std::string unreadable_;  // about the last bad file
     MeshFiles own_files_;
@@ -452,18 +453,9 @@ class SdfImporter {
 
 }  // namespace
 
-bool isSdf(std::string_view bytes) { return xmlRootName(bytes) == "sdf"; }
-
-Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
-                 const Schemas& schemas) {
-    ImportRecords out(schemas, name, options);
-    Budget work(bytes.size(), options.max_work);
-    withFileName(name, [&] {
-        SdfImporter(readSdfShapes(bytes, name, options.model_folders, work), name, options, schemas,
-                    work, out)
-            .write();
-    });
-    return out.take();
+void writeWorldRoom(WorldShapes world, const std::string& name, const ImportOptions& options,
+                    const Schemas& schemas, Budget& work, ImportRecords& out) {
+    WorldImporter(std::move(world), name, options, schemas, work, out).write();
 }
 
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "io/importers.h"
+#include "extensions/gazebo/gazebo.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "support/test_folder.h"
@@ -357,6 +357,31 @@ TEST_F(SdfMeshWalls, StayMeshesWhereBoxesDo) {
     EXPECT_NE(notesOf(document).find("1 mesh cut at a height of 1 m"), std::string::npos);
     cut.slice_walls = 3;  // above all of them
     EXPECT_NE(notesOf(read(room, cut)).find("0 meshes cut at a height of 3 m"), std::string::npos);
+}
+
+TEST(SdfImport, BadMeshesAreLeftOut) {
+    const testing::TestFolder folder;
+    writeAll(folder.file("bad.dae"), "<COLLADA>");
+    std::string world = "<sdf version='1.7'><world name='w'>";
+    const auto box = [&](double x, double y, double length, double width) {
+        world += "<model name='wall'><static>1</static><pose>" + formatDouble(x) + ' ' +
+                 formatDouble(y) +
+                 " 1 0 0 0</pose><link name='l'><collision name='c'><geometry><box><size>" +
+                 formatDouble(length) + ' ' + formatDouble(width) +
+                 " 2</size></box></geometry></collision></link></model>";
+    };
+    box(3, 0, 6.2, 0.2);
+    box(3, 4, 6.2, 0.2);
+    box(0, 2, 0.2, 4.2);
+    box(6, 2, 0.2, 4.2);
+    world +=
+        "<model name='desk'><pose>3 2 0 0 0 0</pose><link name='l'><collision name='c'><geometry>"
+        "<mesh><uri>bad.dae</uri></mesh></geometry></collision></link></model></world></sdf>";
+    const Document document = readSdf(world, folder.file("w.sdf"), {}, sceneSchemas());
+    EXPECT_EQ(countOf(document, "mesh"), 0U);
+    EXPECT_GT(environmentOf(document).indoor().area(), 20);
+    EXPECT_NE(warningsOf(document).find("mesh file `bad.dae` is left out: "), std::string::npos)
+        << warningsOf(document);
 }
 
 }  // namespace

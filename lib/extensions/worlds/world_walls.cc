@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/worlds/world_import.h"
 #include "geom/tolerance.h"
-#include "io/sdf/sdf_import.h"
 
 #include <algorithm>
 #include <array>
@@ -39,9 +39,10 @@ constexpr double kOnEdge = 1e-5;  // metres
 /// Triangles that are placed and cut in the time of one unit of Budget.
 constexpr std::size_t kTrianglesPerUnit = 8;
 
-std::vector<Segment2> linesOf(std::span<const Segment2> others, std::span<const SdfMeshCut> cuts) {
+std::vector<Segment2> linesOf(std::span<const Segment2> others,
+                              std::span<const WorldMeshCut> cuts) {
     std::vector<Segment2> lines(others.begin(), others.end());
-    for (const SdfMeshCut& cut : cuts)
+    for (const WorldMeshCut& cut : cuts)
         for (const PlanPath& path : cut.wall.paths)
             for (std::size_t i = 0; i < path.pieceCount(); ++i) lines.push_back(path.piece(i));
     return lines;
@@ -49,11 +50,11 @@ std::vector<Segment2> linesOf(std::span<const Segment2> others, std::span<const 
 
 double areaOf(const Box2& box) { return box.width() * box.depth(); }
 
-Box2 boxOf(const SdfMeshCut& cut) { return boundsOf(pathPieces(cut.wall.paths)); }
+Box2 boxOf(const WorldMeshCut& cut) { return boundsOf(pathPieces(cut.wall.paths)); }
 
 /// Returns the triangles in the world, loaded as a `mesh` record would be.
-Body bodyOf(const SdfShape& shape, const TriangleMesh& mesh, const Schemas& schemas) {
-    const auto& [x, y, z] = std::get<SdfMesh>(shape.shape).scale;
+Body bodyOf(const WorldShape& shape, const TriangleMesh& mesh, const Schemas& schemas) {
+    const auto& [x, y, z] = std::get<WorldMesh>(shape.shape).scale;
     auto placed = std::make_shared<TriangleMesh>();
     placed->triangles = mesh.triangles;
     placed->vertices.reserve(mesh.vertices.size());
@@ -73,7 +74,7 @@ std::shared_ptr<const TriangleMesh> meshOrNothing(const std::string& path, const
                                                   MeshFiles& files) {
     try {
         limit.whole->grant(openRegular(path).size);
-        return files.load(path, {sdfMeshUp(path), false, limit}).mesh;
+        return files.load(path, {worldMeshUp(path), false, limit}).mesh;
     } catch (const FormatError&) {
         return std::make_shared<TriangleMesh>();
     }
@@ -84,7 +85,7 @@ class RoomEdges {
   public:
     RoomEdges(const PlanRooms& rooms, Budget& work) : edges_(edgesOf(rooms)), near_(edges_, work) {}
 
-    [[nodiscard]] bool touch(const SdfMeshCut& cut) const {
+    [[nodiscard]] bool touch(const WorldMeshCut& cut) const {
         return std::ranges::any_of(pathPieces(cut.wall.paths), [&](const Segment2& line) {
             const Point2 middle = line.a + 0.5 * (line.b - line.a);
             return std::ranges::any_of(near_.near(middle, kOnEdge), [&](std::size_t i) {
@@ -119,7 +120,7 @@ Angle headingOf(const Eigen::Vector3d& axis) {
 
 Point2 floorOf(const Eigen::Vector3d& place) { return {place.x(), place.y()}; }
 
-std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfBox& box) {
+std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldBox& box) {
     const Eigen::Matrix3d& axes = shape.world_from_shape.linear();
     for (std::size_t up = 0; up < 3; ++up) {
         const auto axis = [&axes](std::size_t i) { return axes.col(static_cast<Eigen::Index>(i)); };
@@ -127,20 +128,20 @@ std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfBox& box) {
         std::size_t along = (up + 1) % 3, across = (up + 2) % 3;
         if (box.size[across] > box.size[along]) std::swap(along, across);
         const Eigen::Vector3d& place = shape.world_from_shape.translation();
-        return SdfBlock{floorOf(place),
-                        headingOf(axis(along)),
-                        box.size[along],
-                        box.size[across],
-                        place.z() - box.size[up] / 2,
-                        place.z() + box.size[up] / 2,
-                        false,
-                        shape.model,
-                        shape.line};
+        return WorldBlock{floorOf(place),
+                          headingOf(axis(along)),
+                          box.size[along],
+                          box.size[across],
+                          place.z() - box.size[up] / 2,
+                          place.z() + box.size[up] / 2,
+                          false,
+                          shape.model,
+                          shape.line};
     }
     return std::nullopt;
 }
 
-Box2 boundsOf(const SdfShape& shape, const std::array<double, 3>& size) {
+Box2 boundsOf(const WorldShape& shape, const std::array<double, 3>& size) {
     Box2 box;
     for (const double x : {-0.5, 0.5})
         for (const double y : {-0.5, 0.5})
@@ -150,21 +151,21 @@ Box2 boundsOf(const SdfShape& shape, const std::array<double, 3>& size) {
     return box;
 }
 
-std::optional<SdfBlock> blockOf(const SdfShape& shape, const SdfCylinder& cylinder) {
+std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldCylinder& cylinder) {
     if (!isUpright(shape.world_from_shape.linear().col(2))) return std::nullopt;
     const Eigen::Vector3d& place = shape.world_from_shape.translation();
-    return SdfBlock{floorOf(place),
-                    Angle(),
-                    2 * cylinder.radius,
-                    2 * cylinder.radius,
-                    place.z() - cylinder.length / 2,
-                    place.z() + cylinder.length / 2,
-                    true,
-                    shape.model,
-                    shape.line};
+    return WorldBlock{floorOf(place),
+                      Angle(),
+                      2 * cylinder.radius,
+                      2 * cylinder.radius,
+                      place.z() - cylinder.length / 2,
+                      place.z() + cylinder.length / 2,
+                      true,
+                      shape.model,
+                      shape.line};
 }
 
-bool isWall(const SdfBlock& block, std::optional<double> cut) {
+bool isWall(const WorldBlock& block, std::optional<double> cut) {
     const bool reaches = cut ? block.bottom <= *cut && *cut <= block.top
                              : block.bottom <= kMaxFoot + kCornerTolerance;
     return !block.is_round && reaches && block.width <= kThickestWall &&
@@ -172,7 +173,7 @@ bool isWall(const SdfBlock& block, std::optional<double> cut) {
            block.top - block.bottom >= kMinHeight * block.width;
 }
 
-SdfWall wallOf(const SdfBlock& block) {
+WorldWall wallOf(const WorldBlock& block) {
     const Vec2 half = block.length / 2 * unitVector(block.heading);
     // Sheets that this program wrote are such again.
     const bool is_sheet = block.width <= kSheetThickness * (1 + kUprightTolerance);
@@ -229,14 +230,14 @@ Segment2 joinedEnds(const BoxLine& wall, std::span<const BoxLine> walls, const N
 
 }  // namespace
 
-void joinEnds(std::vector<SdfWall>& walls, Budget& work) {
+void joinEnds(std::vector<WorldWall>& walls, Budget& work) {
     // Models included several times at one pose already create thousands of coincident walls.
     std::map<BoxLine, std::size_t> known;
     std::vector<BoxLine> distinct;
     std::vector<Segment2> lines;
     std::vector<std::size_t> line_of;  // of each wall
     double thickest = 0;
-    for (const SdfWall& wall : walls) {
+    for (const WorldWall& wall : walls) {
         const BoxLine line{wall.paths.front().piece(0), wall.thickness};
         const auto [at, is_new] = known.try_emplace(line, distinct.size());
         line_of.push_back(at->second);
@@ -252,19 +253,19 @@ void joinEnds(std::vector<SdfWall>& walls, Budget& work) {
         walls[i].paths.front().points = {lines[line_of[i]].a, lines[line_of[i]].b};
 }
 
-std::string sdfMeshUp(const std::string& file) {
+std::string worldMeshUp(const std::string& file) {
     const std::string suffix = meshSuffix(file);
     return suffix == ".dae" || suffix == ".obj" ? "z" : "auto";
 }
 
-std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::string& name,
-                                  double height, const WorkLimit& limit, const Schemas& schemas,
-                                  MeshFiles& files) {
+std::vector<WorldMeshCut> cutMeshes(std::span<const WorldShape> shapes, const std::string& name,
+                                    double height, const WorkLimit& limit, const Schemas& schemas,
+                                    MeshFiles& files) {
     Budget& work = *limit.whole;
     std::map<std::string, std::shared_ptr<const TriangleMesh>> loaded;
-    std::vector<SdfMeshCut> cuts;
+    std::vector<WorldMeshCut> cuts;
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        const auto* const mesh = std::get_if<SdfMesh>(&shapes[i].shape);
+        const auto* const mesh = std::get_if<WorldMesh>(&shapes[i].shape);
         if (mesh == nullptr || !mesh->file || mesh->is_part) continue;
         std::shared_ptr<const TriangleMesh>& triangles = loaded[*mesh->file];
         if (triangles == nullptr)
@@ -282,8 +283,8 @@ std::vector<SdfMeshCut> cutMeshes(std::span<const SdfShape> shapes, const std::s
     return cuts;
 }
 
-std::vector<SdfMeshCut> wallsAmong(
-    std::vector<SdfMeshCut> cuts, std::span<const Segment2> others, Budget& work,
+std::vector<WorldMeshCut> wallsAmong(
+    std::vector<WorldMeshCut> cuts, std::span<const Segment2> others, Budget& work,
     const std::function<PlanRooms(std::span<const Segment2>)>& choose) {
     const Box2 world = boundsOf(linesOf(others, cuts));
     std::vector<std::size_t> order(cuts.size());
@@ -298,7 +299,7 @@ std::vector<SdfMeshCut> wallsAmong(
     const PlanRooms rooms = choose(linesOf(others, cuts));
     if (!rooms.regions.empty()) {
         const RoomEdges edges(rooms, work);
-        std::erase_if(cuts, [&](const SdfMeshCut& cut) { return !edges.touch(cut); });
+        std::erase_if(cuts, [&](const WorldMeshCut& cut) { return !edges.touch(cut); });
     }
     return cuts;
 }

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "io/importers.h"
-#include "io/sdf/sdf_files.h"
+#include "extensions/gazebo/gazebo.h"
+#include "extensions/gazebo/sdf_files.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "support/test_folder.h"

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/sdf/sdf_shapes.h"
+#include "extensions/gazebo/gazebo.h"
 
 #include <pugixml.hpp>
 #include <utility>
 
 #include "base/message.h"
 #include "base/number.h"
+#include "extensions/gazebo/sdf_files.h"
+#include "extensions/worlds/world_import.h"
 #include "io/import_records.h"
 #include "io/mesh/mesh_parts.h"
-#include "io/sdf/sdf_files.h"
 
 namespace ispace {
 
@@ -27,7 +28,7 @@ class SdfReader {
               std::span<const std::string> model_folders, Budget& work)
         : files_(bytes, name, model_folders, work) {}
 
-    SdfWorld read() {
+    WorldShapes read() {
         const pugi::xml_node root = files_.root();
         const pugi::xml_node world = root.child("world");
         if (world.next_sibling("world"))
@@ -102,24 +103,24 @@ class SdfReader {
         while (node && node.type() != pugi::node_element) node = node.next_sibling();
         if (!node) return;
         const std::string_view kind = node.name();
-        SdfShape shape{SdfBox(), pose, around.model,
-                       around.line == 0 ? files_.lineOf(node) : around.line};
+        WorldShape shape{WorldBox(), pose, around.model,
+                         around.line == 0 ? files_.lineOf(node) : around.line};
         files_.spend(node, kShapeWork);
         if (kind == "box") {
             const std::vector<double> size = files_.numbersIn(node, "size", 3);
             for (const double side : size)
                 if (!(side > 0)) files_.fail(node, "a box with a side of " + formatDouble(side));
-            shape.shape = SdfBox{{size[0], size[1], size[2]}};
+            shape.shape = WorldBox{{size[0], size[1], size[2]}};
         } else if (kind == "cylinder" || kind == "cone") {
             // A cone stands on floor that its base covers.
             shape.shape =
-                SdfCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
+                WorldCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
         } else if (kind == "capsule") {
             const double radius = files_.lengthIn(node, "radius");
-            shape.shape = SdfCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
+            shape.shape = WorldCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
         } else if (kind == "sphere") {
             const double radius = files_.lengthIn(node, "radius");
-            shape.shape = SdfCylinder{radius, 2 * radius};
+            shape.shape = WorldCylinder{radius, 2 * radius};
             shape.world_from_shape.linear().setIdentity();
         } else if (kind == "ellipsoid") {
             const std::vector<double> radii = files_.numbersIn(node, "radii", 3);
@@ -127,11 +128,11 @@ class SdfReader {
                 if (!(radius > 0))
                     files_.fail(node, "an ellipsoid with a radius of " + formatDouble(radius));
             if (radii[0] == radii[1])
-                shape.shape = SdfCylinder{radii[0], 2 * radii[2]};
+                shape.shape = WorldCylinder{radii[0], 2 * radii[2]};
             else
-                shape.shape = SdfBox{{2 * radii[0], 2 * radii[1], 2 * radii[2]}};
+                shape.shape = WorldBox{{2 * radii[0], 2 * radii[1], 2 * radii[2]}};
         } else if (kind == "polyline") {
-            SdfPolyline polyline{{}, files_.lengthIn(node, "height")};
+            WorldPolyline polyline{{}, files_.lengthIn(node, "height")};
             for (const pugi::xml_node point : node.children("point")) {
                 const std::vector<double> at = files_.numbersOf(point, point.child_value(), 2);
                 polyline.points.push_back({at[0], at[1]});
@@ -139,7 +140,7 @@ class SdfReader {
             files_.spend(node, kPointWork * polyline.points.size());
             shape.shape = std::move(polyline);
         } else if (kind == "mesh") {
-            SdfMesh mesh{std::string(trimmed(node.child_value("uri"))), {}};
+            WorldMesh mesh{std::string(trimmed(node.child_value("uri"))), {}};
             if (hasMeshSuffix(mesh.uri)) mesh.file = files_.fileNamed(node, mesh.uri);
             if (node.child("scale")) {
                 const std::vector<double> scale = files_.numbersIn(node, "scale", 3);
@@ -161,7 +162,7 @@ class SdfReader {
         found_.shapes.push_back(std::move(shape));
     }
 
-    void addUnread(const std::string& kind, const SdfShape& shape, const Transform& pose) {
+    void addUnread(const std::string& kind, const WorldShape& shape, const Transform& pose) {
         ++found_.left_out[kind];
         found_.unread.push_back({kind,
                                  {},
@@ -173,14 +174,27 @@ class SdfReader {
     SdfFiles files_;
     SdfFrames frames_{files_};
     std::vector<pugi::xml_node> includes_;  // that led to the model being read
-    SdfWorld found_;
+    WorldShapes found_;
 };
 
 }  // namespace
 
-SdfWorld readSdfShapes(std::string_view bytes, const std::string& name,
-                       std::span<const std::string> model_folders, Budget& work) {
-    return SdfReader(bytes, name, model_folders, work).read();
+bool isSdf(std::string_view bytes) { return xmlRootName(bytes) == "sdf"; }
+
+Document readSdf(std::string_view bytes, const std::string& name, const ImportOptions& options,
+                 const Schemas& schemas) {
+    ImportRecords out(schemas, name, options);
+    Budget work(bytes.size(), options.max_work);
+    withFileName(name, [&] {
+        WorldShapes world = SdfReader(bytes, name, options.model_folders, work).read();
+        writeWorldRoom(std::move(world), name, options, schemas, work, out);
+    });
+    return out.take();
+}
+
+std::span<const Importer> gazeboImporters() {
+    static constexpr Importer kRows[] = {importer<isSdf, readSdf>("SDF")};
+    return kRows;
 }
 
 }  // namespace ispace
