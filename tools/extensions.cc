@@ -18,6 +18,9 @@
 #ifdef ISPACE_HAS_BUMPERS
 #include "extensions/bumpers/bumper.h"
 #endif
+#ifdef ISPACE_HAS_CAD
+#include "extensions/cad/cad.h"
+#endif
 #ifdef ISPACE_HAS_CALIBRATION
 #include "extensions/calibration/calibrate.h"
 #endif
@@ -117,6 +120,9 @@ bool addFormats() {
 #ifdef ISPACE_HAS_BUMPERS
     addSceneSchemas(bumperSchemas());
     addBumpers();
+#endif
+#ifdef ISPACE_HAS_CAD
+    addImporters(cadImporters());
 #endif
 #ifdef ISPACE_HAS_CALIBRATION
     addImporters(calibrationImporters());

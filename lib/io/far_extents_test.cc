@@ -44,55 +44,6 @@ TEST(Surveyed, RosMaps) {
                 report, 12);
 }
 
-TEST(Surveyed, Svg) {
-    ImportReport report;
-    ImportOptions options;
-    options.report = &report;
-    options.units = "m";
-    const Environment room =
-        environmentOf(readSvg("<svg><rect x='448262' y='-5428799' width='8' height='6'/></svg>",
-                              "a.svg", options, sceneSchemas()));
-    EXPECT_NEAR(room.indoor().area(), 48, 1e-6);
-    const Box2 box = bounds(room.indoor().parts.front().outline);
-    EXPECT_LT(std::max(std::abs(box.low.x), std::abs(box.low.y)), 10);
-    ASSERT_EQ(report.choices.size(), 1U);
-    EXPECT_NE(report.choices[0].message.find("the drawing stands in surveyors' coordinates"),
-              std::string::npos);
-    // With a page there, and a stray line at the origin.
-    EXPECT_NEAR(environmentOf(readSvg("<svg width='10000mm' height='8000mm' viewBox='448000 "
-                                      "-5428800 10 8'><rect x='448001' y='-5428799' width='8' "
-                                      "height='6'/><path d='M0 0h1'/></svg>",
-                                      "a.svg", {}, sceneSchemas()))
-                    .indoor()
-                    .area(),
-                48, 1e-6);
-}
-
-TEST(Surveyed, HouseExpo) {
-    ImportReport report;
-    ImportOptions options;
-    options.report = &report;
-    const Document document = readHouseExpo(
-        "{\"verts\": [[448262, 5428611], [448268, 5428611], [448268, 5428615], [448262, 5428615]],"
-        "\"room_category\": {\"kitchen\": [[448263, 5428612, 448265, 5428614]]}}",
-        "plan.json", options, sceneSchemas());
-    expectMoved(document, report, 24);
-    for (const Record& record : document.records)
-        if (record.keyword() == "zone") {
-            EXPECT_EQ(record.tuple("at"), (Tuple{2, 2}));
-        }
-}
-
-TEST(Surveyed, Galleries) {
-    ImportReport report;
-    ImportOptions options;
-    options.report = &report;
-    expectMoved(readGalleryFile("4 448262/1 5428611/1 448268/1 5428611/1 448268/1 5428615/1 "
-                                "448262/1 5428615/1",
-                                "hall.pol", options, sceneSchemas()),
-                report, 24);
-}
-
 /// A cloud of the walls of a room of 6 m x 4 m, with these points beside it.
 std::string cloudWith(const std::string& strays, int count) {
     std::string points;

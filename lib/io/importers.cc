@@ -192,9 +192,6 @@ Document readYamlRecords(const ImportSource& source) {
     return readYaml(source.bytes, source.operand, source.schemas, {}, source.options.max_work,
                     source.options.includes);
 }
-bool isHouseExpo(const ImportSource& source) {
-    return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos;
-}
 
 /// The formats in which records are written.
 constexpr Importer kRecordText{
@@ -209,10 +206,7 @@ constexpr Importer kFormatsByMagic[] = {
      readRecordsOfGlb},
     kRecordText,
     importer<isAriaMap, readAriaMap>("an ARIA map"),
-    importer<isDxf, readDxf>("DXF"),
     importer<isGridMap, readGridMap>("a MovingAI map"),
-    importer<isGalleryFile, readGalleryFile>("an art gallery", false),
-    importer<isSvg, readSvg>("SVG"),
     {"IFC", true, [](const ImportSource& source) { return isIfc(source.bytes); },
      [](const ImportSource& source) {
          return readIfc(source.bytes, source.operand, source.options, source.schemas);
@@ -226,10 +220,6 @@ constexpr Importer kFormatsByMagic[] = {
 
 /// Formats recognised within plain text; the last accepts any text.
 constexpr Importer kFormatsOfText[] = {
-    {"HouseExpo JSON", true, isHouseExpo,
-     [](const ImportSource& source) {
-         return readHouseExpo(source.bytes, source.operand, source.options, source.schemas);
-     }},
     importer<isRosMap, readRosMap>("a ROS map"),
     {"YAML", false, [](const ImportSource&) { return true; }, readYamlRecords},
 };
@@ -253,10 +243,16 @@ std::vector<MissingFormat>& missingFormats() {
     return formats;
 }
 
+bool hasJsonKey(std::string_view bytes, std::string_view key) {
+    const std::string quoted = '"' + std::string(key) + '"';
+    return isJson(bytes) && bytes.find(quoted) != std::string_view::npos;
+}
+
 /// Returns the extension that would read the source; "" for others.
 std::string_view extensionFor(const ImportSource& source) {
     for (const auto& [sign, extension] : missingFormats()) {
         const bool is_its = sign.front() == '.'   ? meshSuffix(source.operand) == sign
+                            : sign.front() == '{' ? hasJsonKey(source.bytes, sign.substr(1))
                             : sign.front() == '<' ? xmlRootName(source.bytes) == sign.substr(1)
                                                   : source.bytes.starts_with(sign);
         if (is_its) return extension;
@@ -308,7 +304,7 @@ const Importer* formatOf(const ImportSource& source, Refuse refuse) {
         return refuse(0, "not an environment or layout but " + what), nullptr;
     if (kMeshBySuffix.recognises(source)) return &kMeshBySuffix;
     if (!isPlainText(bytes)) return refuse(0, "not an environment or layout: " + wanted()), nullptr;
-    if (isJson(bytes) && !isHouseExpo(source))
+    if (isJson(bytes))
         if (const std::string what = foreignJson(bytes); !what.empty())
             return refuse(0, "not an environment or layout but " + what), nullptr;
     if (const std::string what = foreignXml(bytes); !what.empty())
@@ -328,6 +324,16 @@ const Importer* formatOf(const ImportSource& source, Refuse refuse) {
 }
 
 }  // namespace
+
+bool isJson(std::string_view bytes) {
+    const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
+    if (begin == std::string_view::npos || (bytes[begin] != '{' && bytes[begin] != '['))
+        return false;
+    // YAML's flow form begins likewise; in JSON a quoted key or another bracket follows.
+    const std::size_t next = bytes.find_first_not_of(" \t\r\n", begin + 1);
+    return next != std::string_view::npos &&
+           std::string_view("\"[{").find(bytes[next]) != std::string_view::npos;
+}
 
 void addImporters(std::span<const Importer> importers) {
     addedImporters().insert(addedImporters().end(), importers.begin(), importers.end());

@@ -10,7 +10,6 @@
 #include "base/file.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
-#include "support/test_dxf.h"
 #include "support/test_paths.h"
 
 namespace ispace {
@@ -39,8 +38,8 @@ TEST(Input, ToldApartByContent) {
 
 TEST(Input, SaysWhatItWanted) {
     const std::string wanted =
-        "wanted DXF, GLB, HouseExpo JSON, IFC, SVG, YAML, `#3dm 1`, `#env 1`, a MovingAI map, "
-        "a ROS map, a mesh, a picture, a point cloud, an ARIA map or an art gallery";
+        "wanted GLB, IFC, YAML, `#3dm 1`, `#env 1`, a MovingAI map, "
+        "a ROS map, a mesh, a picture, a point cloud or an ARIA map";
     EXPECT_EQ(errorOf(""), "room: error: empty input: " + wanted);
     EXPECT_EQ(errorOf(" \n\r\n"), "room: error: empty input: " + wanted);
     for (const std::string& junk :
@@ -49,11 +48,7 @@ TEST(Input, SaysWhatItWanted) {
 }
 
 TEST(Input, ImportsToldApartByContent) {
-    const std::string dxf = drawing(rectangle("W", 0, 0, 4, 3), "", 6);
-    EXPECT_EQ(parse(dxf).records.size(), 2U);
-    EXPECT_EQ(parse("999\n# not a comment\n" + dxf).records.size(), 2U);
     EXPECT_EQ(parse("2D-Map\r\nLINES\r\n0 0 9 0\r\n9 0 9 9\r\n9 9 0 0\r\n").records.size(), 2U);
-    EXPECT_EQ(parse("{\"verts\": [[0, 0], [1, 0], [0, 1]]}").records.size(), 2U);
     // JSON is YAML, too.
     EXPECT_EQ(parse("{\"desk\": {\"at\": [1, 2]}}").records.size(), 1U);
     ImportOptions unread;

@@ -15,8 +15,8 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "bench_table.h"
+#include "extensions/cad/cad.h"
 #include "geom/predicates.h"
-#include "io/importers.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
 
@@ -163,6 +163,7 @@ void registerGrown() {
 }  // namespace
 
 int main(int argc, char** argv) {
+    addImporters(cadImporters());
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     registerGrown();

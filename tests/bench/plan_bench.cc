@@ -18,8 +18,8 @@
 #include "base/memory.h"
 #include "base/number.h"
 #include "bench_scenes.h"
+#include "extensions/cad/cad.h"
 #include "io/glb/glb_read.h"
-#include "io/importers.h"
 #include "scene/placement_schemas.h"
 
 namespace {
@@ -127,6 +127,7 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     keepFreedMemory();  // as envc does
+    addImporters(cadImporters());
     for (const std::size_t walls : {1000U, 10000U, 100000U}) {
         const bench::Building plan = bench::building(walls);
         const std::string name = "walls-" + std::to_string(walls);

@@ -12,6 +12,7 @@
 
 #include "base/file.h"
 #include "env/level.h"
+#include "extensions/cad/cad.h"
 #include "extensions/gazebo/gazebo.h"
 #include "io/exporters.h"
 #include "io/importers.h"
@@ -134,6 +135,7 @@ std::map<std::string, int> countsOf(const std::vector<Record>& records) {
 
 // "A room with a lamp cannot become IFC" is an error of the format, never of the room.
 TEST(ExportFormats, EachRecordThroughEachFormatAndBack) {
+    addImporters(cadImporters());
     addImporters(gazeboImporters());
     const testing::TestFolder folder;
     writeAll(folder.file("body.obj"),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Art galleries: polygons with holes, of fractions.
+#include "extensions/cad/cad.h"
 #include "fuzz.h"
-#include "io/importers.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     tryPlan(readGalleryFile, bytes, "gallery.pol");

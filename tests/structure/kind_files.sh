@@ -15,7 +15,7 @@ root, most = pathlib.Path(sys.argv[1]), 8
 # Doors and windows are older than their motors and blinds, which are states. RFID readers added the key `tag`, light
 # meters the key `lumens`. SVG has an element <switch>, rays have contacts, and ROS has messages with names of readings.
 pattern_of = {"contact": '"contact"|\\bContactState\\b', "door": '{"door", "', "rfid": '"rfid"|\\btagKey\\b', "lux": '"lux"|"lumens"'}
-unrelated = {("switch", "lib/io/plan/svg.cc"), ("contact", "lib/trace/flat_packet.cc")}
+unrelated = {("switch", "lib/extensions/cad/svg.cc"), ("contact", "lib/trace/flat_packet.cc")}
 unrelated |= {(kind, f"lib/sense/formats/ros_{part}") for kind in ("lux", "thermometer", "imu")
               for part in ("types.h", "types.cc", "messages.h")}
 files = {}

@@ -93,7 +93,7 @@ std::vector<WorldMeshCut> wallsAmong(
 ///
 /// - Upright boxes on the floor, at most 0.5 m thick, three times as long and twice as high, become
 /// walls; ends within the thickness of another wall are moved onto its mid-line, and the
-/// room is chosen as in readDxf(). Other upright boxes become cubes, upright cylinders cylinders,
+/// room is chosen by chooseRooms(). Other upright boxes become cubes, upright cylinders cylinders,
 /// polylines on the floor closed fences.
 /// - Meshes become `mesh` records if their files are there, and are else left out with a warning.
 /// Where boxes and polylines enclose no room, or with ImportOptions::slice_walls, those that bound

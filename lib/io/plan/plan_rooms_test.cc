@@ -235,23 +235,6 @@ void expectArea(const std::string& file, double area, const ImportOptions& optio
 
 TEST(RealPlans, LinesThatMissEachOther) { expectArea("ActivMediaLab.map", 38.2); }
 TEST(RealPlans, ClosedLines) { expectArea("triangle.map", 103.4); }
-TEST(RealPlans, FrontDoorOpen) { expectArea("front_door_open.dxf", 84.2); }
-TEST(RealPlans, UnitsAsAsked) {
-    ImportOptions options;
-    options.units = "m";
-    expectArea("units_lie.dxf", 57.3, options);
-}
-
-TEST(RealPlans, UnitsThatLieAreSaid) {
-    expectArea("units_lie.dxf", 57.3);
-    const char* folder = std::getenv("ISPACE_TEST_DATA");
-    if (folder == nullptr) GTEST_SKIP() << "ISPACE_TEST_DATA is not set";
-    const std::string warned =
-        warningsOf(readDocument(std::string(folder) + "/more/units_lie.dxf", {}, sceneSchemas()));
-    EXPECT_NE(warned.find("states mm ($INSUNITS), but is read in m, in which walls are 0.20 m"),
-              std::string::npos)
-        << warned;
-}
 
 }  // namespace
 }  // namespace ispace

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 
 #include <cmath>
 #include <numbers>
 
+#include "extensions/cad/svg.h"
 #include "geom/predicates.h"
-#include "io/plan/svg.h"
 #include "support/test_import.h"
 
 namespace ispace {

@@ -16,10 +16,10 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/environment.h"
+#include "extensions/cad/cad.h"
+#include "extensions/cad/dxf_drawing.h"
 #include "geom/tolerance.h"
-#include "io/importers.h"
 #include "io/plan/drawing_unit.h"
-#include "io/plan/dxf_drawing.h"
 #include "io/plan/line_plan.h"
 
 namespace ispace {

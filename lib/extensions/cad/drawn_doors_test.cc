@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 #include "io/plan/line_plan.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"

@@ -4,8 +4,9 @@
 #include <string>
 #include <string_view>
 
+#include "base/file.h"
 #include "base/number.h"
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
@@ -330,6 +331,33 @@ TEST(DxfWalls, OneEncodingForAFile) {
     EXPECT_NE(of("AC1015", "ANSI_1252", "W\xE4nde").find("Wände (1)"), std::string::npos);
     EXPECT_NE(of("AC1032", "ANSI_1252", "Wände").find("Wände (1)"), std::string::npos);
     EXPECT_NE(of("AC1015", "ANSI_932", "\x95\xC7").find("壁 (1)"), std::string::npos);
+}
+
+/// Areas that a person would mean; `options` where a person has to say something.
+void expectArea(const std::string& file, double area, const ImportOptions& options = {}) {
+    const char* folder = std::getenv("ISPACE_TEST_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "ISPACE_TEST_DATA is not set";
+    const Document document =
+        readDxf(readAll(std::string(folder) + "/more/" + file), file, options, sceneSchemas());
+    EXPECT_NEAR(environmentOf(document).indoor().area(), area, 0.01 * area) << file;
+}
+
+TEST(RealPlans, FrontDoorOpen) { expectArea("front_door_open.dxf", 84.2); }
+TEST(RealPlans, UnitsAsAsked) {
+    ImportOptions options;
+    options.units = "m";
+    expectArea("units_lie.dxf", 57.3, options);
+}
+
+TEST(RealPlans, UnitsThatLieAreSaid) {
+    expectArea("units_lie.dxf", 57.3);
+    const char* folder = std::getenv("ISPACE_TEST_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "ISPACE_TEST_DATA is not set";
+    const std::string warned = warningsOf(readDxf(
+        readAll(std::string(folder) + "/more/units_lie.dxf"), "units_lie.dxf", {}, sceneSchemas()));
+    EXPECT_NE(warned.find("states mm ($INSUNITS), but is read in m, in which walls are 0.20 m"),
+              std::string::npos)
+        << warned;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/number.h"
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 

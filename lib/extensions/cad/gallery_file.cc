@@ -10,9 +10,9 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/walls.h"
+#include "extensions/cad/cad.h"
 #include "geom/polygon.h"
 #include "io/import_records.h"
-#include "io/importers.h"
 
 namespace ispace {
 

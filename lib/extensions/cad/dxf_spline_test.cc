@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "extensions/cad/cad.h"
+#include "extensions/cad/curves.h"
 #include "geom/predicates.h"
-#include "io/importers.h"
-#include "io/plan/curves.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 

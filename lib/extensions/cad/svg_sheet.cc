@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "extensions/cad/svg.h"
 #include "io/plan/drawing_source.h"
-#include "io/plan/svg.h"
 
 namespace ispace {
 

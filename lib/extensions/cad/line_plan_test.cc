@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan/dxf_drawing.h"
+#include "extensions/cad/dxf_drawing.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,9 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "drawing/dxf_writer.h"
+#include "extensions/cad/dxf_text.h"
 #include "geom/tolerance.h"
 #include "io/importers.h"
-#include "io/plan/dxf_text.h"
 #include "io/plan/layer_names.h"
 #include "record/text.h"
 

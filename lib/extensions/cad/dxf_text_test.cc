@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan/dxf_text.h"
+#include "extensions/cad/dxf_text.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 
 #include <algorithm>
 #include <array>
@@ -300,16 +300,6 @@ void writeZones(const std::vector<Box>& boxes, ImportRecords& out) {
 }
 
 }  // namespace
-
-bool isJson(std::string_view bytes) {
-    const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
-    if (begin == std::string_view::npos || (bytes[begin] != '{' && bytes[begin] != '['))
-        return false;
-    // YAML's flow form begins likewise; in JSON a quoted key or another bracket follows.
-    const std::size_t next = bytes.find_first_not_of(" \t\r\n", begin + 1);
-    return next != std::string_view::npos &&
-           std::string_view("\"[{").find(bytes[next]) != std::string_view::npos;
-}
 
 Document readHouseExpo(std::string_view json, const std::string& name, const ImportOptions& options,
                        const Schemas& schemas) {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "drawing/plan/plan_json.h"
+#include "extensions/cad/dxf_drawing.h"
 #include "geom/pose.h"
 #include "geom/tolerance.h"
-#include "io/plan/dxf_drawing.h"
 
 namespace ispace {
 

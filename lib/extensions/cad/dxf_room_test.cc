@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drawings that writeDxf() made, read back.
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 

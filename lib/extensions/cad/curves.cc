@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan/curves.h"
+#include "extensions/cad/curves.h"
 
 #include <algorithm>
 #include <numbers>

@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "extensions/cad/curves.h"
 #include "geom/point.h"
-#include "io/plan/curves.h"
 #include "io/plan/line_plan.h"
 #include "io/unread.h"
 

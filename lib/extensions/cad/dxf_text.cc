@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan/dxf_text.h"
+#include "extensions/cad/dxf_text.h"
 
 #include <iconv.h>
 

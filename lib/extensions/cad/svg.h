@@ -16,8 +16,8 @@
 #include <variant>
 #include <vector>
 
+#include "extensions/cad/curves.h"
 #include "io/import_records.h"
-#include "io/plan/curves.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 
 #include <algorithm>
 #include <array>
@@ -20,10 +20,10 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "extensions/cad/svg.h"
 #include "io/import_records.h"
 #include "io/plan/drawing_unit.h"
 #include "io/plan/line_plan.h"
-#include "io/plan/svg.h"
 #include "io/unread.h"
 #include "io/xml_file.h"
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "io/plan/dxf_drawing.h"
+#include "extensions/cad/dxf_drawing.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/plan/svg.h"
+#include "extensions/cad/svg.h"
 
 #include <algorithm>
 #include <array>

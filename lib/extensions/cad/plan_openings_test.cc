@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/importers.h"
+#include "extensions/cad/cad.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 #include "support/test_work.h"
