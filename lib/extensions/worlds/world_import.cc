@@ -112,7 +112,13 @@ class WorldImporter {
         else if (isWall(*block, options_.slice_walls))
             walls_.push_back(wallOf(*block));
         else
-            blocks_.push_back(*block);
+            addThing(*block);
+    }
+
+    /// Adds a block that is no wall, so that it has no opening either.
+    void addThing(const WorldBlock& block) {
+        if (block.opening) ++world_.left_out[block.opening->is_window ? "window" : "door"];
+        blocks_.push_back(block);
     }
 
     /// Adds a shape extruded from the floor as a closed fence, which excludes its inside from the
@@ -264,6 +270,15 @@ class WorldImporter {
         return lines;
     }
 
+    /// The lines of the doors in walls.
+    [[nodiscard]] std::vector<Segment2> doorLines() const {
+        std::vector<Segment2> lines;
+        for (const WorldWall& wall : walls_)
+            if (wall.opening && !wall.opening->first.is_window)
+                lines.push_back(wall.opening->second);
+        return lines;
+    }
+
     /// Tried rooms; their messages are reported once the rooms are kept.
     struct Trial {
         PlanRooms rooms;
@@ -279,7 +294,8 @@ class WorldImporter {
         if (options.found != nullptr) options.found = &trial.found;
         ImportRecords out(schemas_, name_, options);
         trial.rooms = withFileName(name_, [&] {
-            return chooseRooms({{lines.begin(), lines.end()}, {}, {}, {}, {}}, options, work_, out);
+            return chooseRooms({{lines.begin(), lines.end()}, doorLines(), {}, {}, {}}, options,
+                               work_, out);
         });
         trial.messages = out.take();
         return trial;
@@ -377,7 +393,36 @@ class WorldImporter {
                 out_.wall(path.piece(0), id, wall.line);
             out_.last().set("height", wholeMicrometres(wall.top));
             out_.last().set("thickness", wholeMicrometres(wall.thickness));
+            if (wall.opening && !path.closed && path.points.size() == 2)
+                addOpening(id, wall, path.piece(0));
         }
+    }
+
+    /// Adds a door or window to the record of a wall's line; joinEnds() may have moved its ends.
+    void addOpening(const std::string& id, const WorldWall& wall, const Segment2& line) {
+        const auto& [opening, whole] = *wall.opening;
+        const double length = distance(line.a, line.b);
+        const Vec2 along = 1 / length * (line.b - line.a);
+        const auto onLine = [&](Point2 p) {
+            return wholeMicrometres(line.a +
+                                    std::clamp(dot(p - line.a, along), 0.0, length) * along);
+        };
+        const Point2 from = onLine(whole.a), to = onLine(whole.b);
+        if (from == to) {
+            ++world_.left_out[opening.is_window ? "window" : "door"];
+            return;
+        }
+        Record& record = out_.add(opening.is_window ? "window" : "door", wall.line);
+        record.set("wall", id);
+        ImportRecords::setPoint(record, "from", from);
+        ImportRecords::setPoint(record, "to", to);
+        const double sill = opening.is_window ? opening.sill : 0;
+        record.set("height", wholeMicrometres(std::min(opening.height, wall.top - sill)));
+        if (opening.is_window)
+            record.set("sill", wholeMicrometres(sill));
+        else
+            record.set("open", opening.is_open);
+        ++(opening.is_window ? windows_ : doors_);
     }
 
     void addFence(const Fence& fence) {
@@ -425,8 +470,10 @@ class WorldImporter {
         if (outside_ + blocks_outside_ > 0)
             out_.note("left out outside of the room: " + countText(outside_, "wall") + " and " +
                       countText(blocks_outside_, "thing"));
-        out_.note("walls: " + std::to_string(walls_.size() - outside_) + ", doors: " +
-                  std::to_string(doors_) + ", fences: " + std::to_string(fences_.size()) +
+        out_.note("walls: " + std::to_string(walls_.size() - outside_) +
+                  ", doors: " + std::to_string(doors_) +
+                  (windows_ > 0 ? ", windows: " + std::to_string(windows_) : "") +
+                  ", fences: " + std::to_string(fences_.size()) +
                   ", cubes and cylinders: " + std::to_string(blocks_.size() - blocks_outside_) +
                   ", meshes: " + std::to_string(meshes_));
     }
@@ -448,7 +495,8 @@ class WorldImporter {
     MeshFiles& files_;
     std::map<std::string, std::optional<std::shared_ptr<const TriangleMesh>>> loaded_;  // by file
     std::vector<PlanRegion> regions_;  // that are kept
-    std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, blocks_outside_ = 0, doors_ = 0;
+    std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, blocks_outside_ = 0, doors_ = 0,
+                windows_ = 0;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "extensions/worlds/world_shapes.h"
@@ -36,7 +37,9 @@ struct WorldBlock {
     double bottom = 0, top = 0;
     bool is_round = false;
     std::string model;
-    int line = 0;  ///< of the file
+    std::optional<WorldOpening> opening = {};
+    bool is_wall = false;  ///< by its name
+    int line = 0;          ///< of the file
 };
 
 /// Converts a box or cylinder to a block; std::nullopt if it is tilted.
@@ -49,10 +52,12 @@ struct WorldWall {
     double thickness = 0, top = 0;
     std::string model;
     int line = 0;  ///< of the file
+    /// Of a box, and its line on the mid-line.
+    std::optional<std::pair<WorldOpening, Segment2>> opening = {};
 };
 
-/// Returns true for a box with the form of a wall: at most 0.5 m thick, three times as long and
-/// twice as high. It stands on the floor, or reaches through the height of a cut.
+/// Returns true for a box with the name or the form of a wall: at most 0.5 m thick, three times as
+/// long and twice as high. It stands on the floor, or reaches through the height of a cut.
 bool isWall(const WorldBlock& block, std::optional<double> cut);
 WorldWall wallOf(const WorldBlock& block);
 /// Moves the end of a mid-line along it onto the mid-line of another wall if it ends within that
@@ -94,7 +99,7 @@ std::vector<WorldMeshCut> wallsAmong(
 /// - Upright boxes on the floor, at most 0.5 m thick, three times as long and twice as high, become
 /// walls; ends within the thickness of another wall are moved onto its mid-line, and the
 /// room is chosen by chooseRooms(). Other upright boxes become cubes, upright cylinders cylinders,
-/// polylines on the floor closed fences.
+/// polylines on the floor closed fences. Walls have their openings, and doors join rooms.
 /// - Meshes become `mesh` records if their files are there, and are else left out with a warning.
 /// Where boxes and polylines enclose no room, or with ImportOptions::slice_walls, those that bound
 /// one are cut into walls, see wallsAmong().

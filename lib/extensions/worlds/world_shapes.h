@@ -20,8 +20,16 @@ namespace ispace {
 
 /// Shapes of a world, in their own frames: centre in the origin, z along a cylinder and out of a
 /// polyline's plane.
+/// A door or window in the middle of a wall.
+struct WorldOpening {
+    double width = 0, sill = 0, height = 0;
+    bool is_window = false;
+    bool is_open = true;  ///< of a door
+};
 struct WorldBox {
-    std::array<double, 3> size{};  ///< along x, y and z
+    std::array<double, 3> size{};              ///< along x, y and z
+    std::optional<WorldOpening> opening = {};  ///< in it, if it is a wall
+    bool is_wall = false;                      ///< by its name, whatever its form
 };
 struct WorldCylinder {
     double radius = 0, length = 0;

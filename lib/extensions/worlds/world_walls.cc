@@ -136,6 +136,8 @@ std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldBox& box) 
                           place.z() + box.size[up] / 2,
                           false,
                           shape.model,
+                          box.opening,
+                          box.is_wall,
                           shape.line};
     }
     return std::nullopt;
@@ -162,26 +164,35 @@ std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldCylinder& 
                       place.z() + cylinder.length / 2,
                       true,
                       shape.model,
+                      {},
+                      false,
                       shape.line};
 }
 
 bool isWall(const WorldBlock& block, std::optional<double> cut) {
     const bool reaches = cut ? block.bottom <= *cut && *cut <= block.top
                              : block.bottom <= kMaxFoot + kCornerTolerance;
-    return !block.is_round && reaches && block.width <= kThickestWall &&
-           block.length >= kMinLength * block.width &&
-           block.top - block.bottom >= kMinHeight * block.width;
+    const bool has_form = block.width <= kThickestWall &&
+                          block.length >= kMinLength * block.width &&
+                          block.top - block.bottom >= kMinHeight * block.width;
+    return !block.is_round && reaches && (block.is_wall || has_form);
 }
 
 WorldWall wallOf(const WorldBlock& block) {
     const Vec2 half = block.length / 2 * unitVector(block.heading);
     // Sheets that this program wrote are such again.
     const bool is_sheet = block.width <= kSheetThickness * (1 + kUprightTolerance);
-    return {{{{block.center - half, block.center + half}, false, block.line}},
-            is_sheet ? 0 : block.width,
-            block.top,
-            block.model,
-            block.line};
+    WorldWall wall{{{{block.center - half, block.center + half}, false, block.line}},
+                   is_sheet ? 0 : block.width,
+                   block.top,
+                   block.model,
+                   block.line};
+    if (block.opening) {
+        const double width = std::min(block.opening->width, block.length);
+        const Vec2 side = width / 2 * unitVector(block.heading);
+        wall.opening = {*block.opening, {block.center - side, block.center + side}};
+    }
+    return wall;
 }
 
 namespace {
