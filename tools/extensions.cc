@@ -91,6 +91,9 @@
 #ifdef ISPACE_HAS_WEB
 #include "extensions/web/web_options.h"
 #endif
+#ifdef ISPACE_HAS_WEBOTS
+#include "extensions/webots/webots.h"
+#endif
 #ifdef ISPACE_HAS_WIRE
 #include "extensions/wire/wire_options.h"
 #endif
@@ -161,6 +164,9 @@ bool addFormats() {
 #ifdef ISPACE_HAS_RADIOS
     addSceneSchemas(radioSchemas());
     addRadios();
+#endif
+#ifdef ISPACE_HAS_WEBOTS
+    addImporters(webotsImporters());
 #endif
     for (const auto& [extension, owner, name] : missingOffers()) {
         if (owner == "record") addMissingKeyword(name, extension);
