@@ -72,9 +72,6 @@ constexpr std::pair<std::string_view, const char*> kForeign[] = {
      "FILE plan.svg`, or to a picture with `pdftoppm -png`"},
     {"%!PS", "PostScript: convert it to PDF with `ps2pdf`, then to SVG with `pdftocairo -svg`"},
     {"8BPS", "a Photoshop picture: convert it, for example with `convert FILE[0] plan.png`"},
-    {"#VRML_SIM",
-     "a Webots world: export its scene as X3D or VRML, convert that, for example with Blender, to "
-     "glTF or COLLADA, and cut walls from it with --slice-walls"},
     {"ISO-10303-21",
      "a STEP file without a building (IFC): export it as STL or OBJ, for example with FreeCAD"},
     {"gimp xcf", "a GIMP picture: export it as PNG"},

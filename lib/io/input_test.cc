@@ -126,7 +126,6 @@ TEST(Input, FormatsThatAreNotReadAreNamed) {
         {"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0"s, "but an OLE file, as Revit"},
         {"PK\3\4\x14", "but a zip archive: unpack it"},
         {"ISO-10303-21;\nFILE_SCHEMA(('AP214'));", "but a STEP file without a building"},
-        {"#VRML_SIM R2023b utf8\nWorldInfo {\n}\n", "but a Webots world: export its scene"},
         {"BLENDER-v293", "but a Blender scene: export it"},
         {"\x1f\x8b\x08", "but compressed with gzip: unpack it"},
         {"\xff\xfe<\0s\0"s, "but XML in UTF-16: convert it"},
