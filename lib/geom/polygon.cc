@@ -19,6 +19,7 @@
 #include <numeric>
 #include <span>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "geom/planar_map.h"
@@ -331,12 +332,15 @@ class Cost {
         std::sort(kept_.begin(), kept_.end(), lexLess);
     }
 
-    boost::optional<double> operator()(
-        const Curves& net, const Curves::Vertices_in_constraint_iterator& vertex) const {
-        if (std::binary_search(kept_.begin(), kept_.end(), placeOf(*vertex), lexLess))
-            return boost::none;
+    /// An optional of Boost in CGAL 5, of the standard library in CGAL 6.
+    using Optional = std::invoke_result_t<ps::Squared_distance_cost, const Curves&,
+                                          Curves::Vertices_in_constraint_iterator>;
+
+    Optional operator()(const Curves& net,
+                        const Curves::Vertices_in_constraint_iterator& vertex) const {
+        if (std::binary_search(kept_.begin(), kept_.end(), placeOf(*vertex), lexLess)) return {};
         const auto cost = ps::Squared_distance_cost()(net, vertex);
-        if (!cost || *cost > most_ || isTight(net, vertex)) return boost::none;
+        if (!cost || *cost > most_ || isTight(net, vertex)) return {};
         const auto place =
             std::lower_bound(order_.begin(), order_.end(), placeOf(*vertex), lexLess);
         const double share =

@@ -5,6 +5,8 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/Triangular_expansion_visibility_2.h>
 
+#include <boost/variant/get.hpp>
+#include <variant>
 #include <vector>
 
 #include "geom/point.h"
@@ -22,6 +24,16 @@ using Vertex = Arrangement::Vertex_const_handle;
 
 Kernel::Point_2 exact(Point2 p) { return {p.x, p.y}; }
 
+/// The alternative of a variant of Boost (CGAL 5) or of the standard library (CGAL 6), or null.
+template <typename T, typename Variant>
+const T* as(const Variant& found) {
+    if constexpr (requires { std::get_if<T>(&found); }) {
+        return std::get_if<T>(&found);
+    } else {
+        return boost::get<T>(&found);
+    }
+}
+
 }  // namespace
 
 struct VisibilityOracle::Data {
@@ -33,10 +45,10 @@ struct VisibilityOracle::Data {
 
     double area(const Kernel::Point_2& p) {
         const auto found = locator.locate(p);
-        if (const auto* const face = boost::get<Face>(&found)) return areaIn(p, *face);
-        if (const auto* const edge = boost::get<Halfedge>(&found))
+        if (const auto* const face = as<Face>(found)) return areaIn(p, *face);
+        if (const auto* const edge = as<Halfedge>(found))
             return areaIn(p, *edge) + areaIn(p, (*edge)->twin());
-        const auto vertex = boost::get<Vertex>(found);
+        const Vertex vertex = *as<Vertex>(found);
         double sum = 0;
         Arrangement::Halfedge_around_vertex_const_circulator edge = vertex->incident_halfedges();
         const auto first = edge;
@@ -93,7 +105,7 @@ double VisibilityOracle::areaFrom(const Segment2& line, int eighths, Point2& rou
 
 std::optional<std::size_t> VisibilityOracle::faceOf(Point2 p) {
     const auto found = data_->locator.locate(exact(p));
-    const auto* const face = boost::get<Face>(&found);
+    const auto* const face = as<Face>(found);
     if (face == nullptr) return std::nullopt;
     data_->faces.push_back(*face);
     return data_->faces.size() - 1;
