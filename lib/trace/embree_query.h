@@ -15,6 +15,7 @@
 #include <cstring>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "trace/embree_device.h"
@@ -53,7 +54,17 @@ struct EmbreeQuery {
     }
     template <auto kCall, typename Rays>
     void trace(const int* valid, RTCScene scene, Rays* rays) {
-        kCall(valid, scene, rays, &arguments);
+        if constexpr (std::is_invocable_v<decltype(kCall), const int*, RTCScene, Rays*,
+                                          RTCIntersectArguments*>) {
+            kCall(valid, scene, rays, &arguments);
+        } else {
+            RTCOccludedArguments occluded;
+            rtcInitOccludedArguments(&occluded);
+            occluded.context = &context;
+            occluded.flags = arguments.flags;
+            occluded.filter = arguments.filter;
+            kCall(valid, scene, rays, &occluded);
+        }
     }
     void trace(RTCScene scene, RTCRayHit* ray) { rtcIntersect1(scene, ray, &arguments); }
     void makeIncoherent() {
