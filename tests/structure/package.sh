@@ -9,6 +9,31 @@ for program in dpkg-buildpackage dh dh_python3 lintian; do
 done
 [ -d "$binary_dir/share/completions" ] || skip "a build with sanitizers is not packed"
 
+# Versions go up: before a release, at it, and behind it.
+if command -v git >/dev/null; then
+    mkdir -p history/.ci
+    cp "$source_dir/.ci/package" history/.ci
+    cd history
+    git init -q
+    commit() {
+        echo "$1" >CHANGELOG.md
+        git add -A
+        git -c user.name=a -c user.email=a@b.c commit -q -m "$2"
+        .ci/package --version
+    }
+    echo 'project(ispace VERSION 1.2.0 LANGUAGES CXX)' >CMakeLists.txt
+    versions="$(commit 1 'Begin 1.2.0') $(commit 2 'Add') $(commit 3 'Release 1.2.0') $(commit 4 'Add')"
+    sed -i 's/1.2.0/1.3.0/' CMakeLists.txt
+    versions+=" $(commit 5 'Begin 1.3.0')"
+    [ "$(cut -d ' ' -f 3 <<<"$versions")" = 1.2.0 ] || fail "the version of a release: $versions"
+    before=1.1.9
+    for version in $versions; do
+        dpkg --compare-versions "$before" lt "$version" || fail "$version is not above $before"
+        before=$version
+    done
+    cd ..
+fi
+
 export DPKG_DEB_COMPRESSOR_TYPE=gzip DPKG_DEB_COMPRESSOR_LEVEL=1
 "$source_dir/.ci/package" "$binary_dir" one >log 2>&1 || fail "$(cat log)"
 LINTIAN="" "$source_dir/.ci/package" "$binary_dir" two >log 2>&1 || fail "$(cat log)"
