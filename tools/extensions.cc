@@ -53,6 +53,9 @@
 #include "extensions/locks/lock.h"
 #include "extensions/locks/lock_role.h"
 #endif
+#ifdef ISPACE_HAS_MAPS
+#include "extensions/maps/maps.h"
+#endif
 #ifdef ISPACE_HAS_MEMORY
 #include "extensions/memory/memory.h"
 #endif
@@ -147,6 +150,9 @@ bool addFormats() {
 #endif
 #ifdef ISPACE_HAS_LOCKS
     addLocks();
+#endif
+#ifdef ISPACE_HAS_MAPS
+    addImporters(mapImporters());
 #endif
 #ifdef ISPACE_HAS_MEMORY
     addSceneSchemas(volumeSchemas());

@@ -202,8 +202,6 @@ constexpr Importer kFormatsByMagic[] = {
     {"GLB", false, [](const ImportSource& source) { return isGlb(source.bytes); },
      readRecordsOfGlb},
     kRecordText,
-    importer<isAriaMap, readAriaMap>("an ARIA map"),
-    importer<isGridMap, readGridMap>("a MovingAI map"),
     {"IFC", true, [](const ImportSource& source) { return isIfc(source.bytes); },
      [](const ImportSource& source) {
          return readIfc(source.bytes, source.operand, source.options, source.schemas);

@@ -144,39 +144,12 @@ void loadFiles(Document& document, const std::string& operand, const ImportOptio
 /// Rejects a file as a whole, or because of one line of it. \throws FormatError
 [[noreturn]] void failFile(const std::string& name, const std::string& message, int line = 0);
 
-/// Returns true if the first line is `2D-Map`.
-bool isAriaMap(std::string_view bytes);
-
-/// Reads a map of ARIA and MobileSim: the LINES, in millimetres, become walls: lines that meet end
-/// to end are one fence, points within ImportOptions::snap (default 5 mm) are one. Keeps the lines
-/// that bound or lie in the region around Home, else the largest one, with an `inside` point, Home
-/// if it lies there. If no region is enclosed, all lines are kept.
-///
-/// Forbidden areas become zones, `forbidden-NAME` or `forbidden`; forbidden lines and other cairns
-/// are counted in Document::notes. With ImportOptions::points the points of DATA become cubes on a
-/// grid of 0.05 m, as high as the walls, except points within 0.1 m of a line, which are echoes of
-/// it.
-/// \throws FormatError with the line: truncated, no number where one is due, no lines
-Document readAriaMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
-                     const Schemas& schemas);
-
 /// Reads the plan in a picture without map.yaml: pixels are ImportOptions::resolution wide, the
 /// lower left corner lies at ImportOptions::origin. Pixels lighter than 80.4 % are free, the
 /// default of map_server; mostly transparent ones are unknown. See readRosMap() for the rest.
 /// \throws FormatError: no resolution is given, no free pixel, a bad picture
 Document readBarePicture(std::string_view bytes, const std::string& name,
                          const ImportOptions& options, const Schemas& schemas);
-
-/// Returns true for a grid map of MovingAI's benchmarks: the first line is `type` and a word.
-bool isGridMap(std::string_view bytes);
-
-/// Reads a grid map (`type octile`): cells of `.` and `G` (ground) and `S` (swamp, which can be
-/// walked) are free; `@` and `O` (out of bounds), `T` (trees) and `W` (water, which cannot be
-/// entered from ground) are not. Cells are ImportOptions::resolution wide, by default 1 m, and kept
-/// exactly unless ImportOptions::simplify or clean is given.
-/// \throws FormatError with the line
-Document readGridMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
-                     const Schemas& schemas);
 
 /// Returns true if the bytes begin like a JSON object or list.
 bool isJson(std::string_view bytes);

@@ -38,8 +38,7 @@ TEST(Input, ToldApartByContent) {
 
 TEST(Input, SaysWhatItWanted) {
     const std::string wanted =
-        "wanted GLB, IFC, YAML, `#3dm 1`, `#env 1`, a MovingAI map, "
-        "a ROS map, a mesh, a picture, a point cloud or an ARIA map";
+        "wanted GLB, IFC, YAML, `#3dm 1`, `#env 1`, a ROS map, a mesh, a picture or a point cloud";
     EXPECT_EQ(errorOf(""), "room: error: empty input: " + wanted);
     EXPECT_EQ(errorOf(" \n\r\n"), "room: error: empty input: " + wanted);
     for (const std::string& junk :
@@ -48,7 +47,6 @@ TEST(Input, SaysWhatItWanted) {
 }
 
 TEST(Input, ImportsToldApartByContent) {
-    EXPECT_EQ(parse("2D-Map\r\nLINES\r\n0 0 9 0\r\n9 0 9 9\r\n9 9 0 0\r\n").records.size(), 2U);
     // JSON is YAML, too.
     EXPECT_EQ(parse("{\"desk\": {\"at\": [1, 2]}}").records.size(), 1U);
     ImportOptions unread;
@@ -111,7 +109,6 @@ TEST(Input, PicturesAlone) {
     EXPECT_FALSE(isPlan(mesh, "room.obj", options, sceneSchemas()));
     options.slice_walls = 1;
     EXPECT_TRUE(isPlan(mesh, "room.obj", options, sceneSchemas()));
-    EXPECT_TRUE(isPlan("type octile\nheight 1\n", "arena.map", options, sceneSchemas()));
 }
 
 TEST(Input, FormatsThatAreNotReadAreNamed) {

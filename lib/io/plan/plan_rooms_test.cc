@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <random>
 
 #include "base/budget.h"
@@ -223,18 +222,6 @@ TEST(PlanRooms, WallsOfALargeBuildingMayMeet) {
                      lines == 1'000'000U);
     }
 }
-
-/// Areas that a person would mean; `options` where a person has to say something.
-void expectArea(const std::string& file, double area, const ImportOptions& options = {}) {
-    const char* folder = std::getenv("ISPACE_TEST_DATA");
-    if (folder == nullptr) GTEST_SKIP() << "ISPACE_TEST_DATA is not set";
-    const Document document =
-        readDocument(std::string(folder) + "/more/" + file, options, sceneSchemas());
-    EXPECT_NEAR(environmentOf(document).indoor().area(), area, 0.01 * area) << file;
-}
-
-TEST(RealPlans, LinesThatMissEachOther) { expectArea("ActivMediaLab.map", 38.2); }
-TEST(RealPlans, ClosedLines) { expectArea("triangle.map", 103.4); }
 
 }  // namespace
 }  // namespace ispace

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/importers.h"
+#include "extensions/maps/maps.h"
 
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "base/file.h"
 #include "env/level.h"
 #include "support/test_import.h"
 
@@ -192,6 +198,18 @@ TEST(AriaMap, Known) {
     EXPECT_FALSE(isAriaMap("2D-Maps\n"));
     EXPECT_FALSE(isAriaMap("2D"));
 }
+
+/// Areas that a person would mean; `options` where a person has to say something.
+void expectArea(const std::string& file, double area, const ImportOptions& options = {}) {
+    const char* folder = std::getenv("ISPACE_TEST_DATA");
+    if (folder == nullptr) GTEST_SKIP() << "ISPACE_TEST_DATA is not set";
+    const Document document =
+        readAriaMap(readAll(std::string(folder) + "/more/" + file), file, options, sceneSchemas());
+    EXPECT_NEAR(environmentOf(document).indoor().area(), area, 0.01 * area) << file;
+}
+
+TEST(AriaMap, LinesThatMissEachOther) { expectArea("ActivMediaLab.map", 38.2); }
+TEST(AriaMap, ClosedLines) { expectArea("triangle.map", 103.4); }
 
 }  // namespace
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/importers.h"
+#include "extensions/maps/maps.h"
 
 #include <algorithm>
 #include <cmath>
