@@ -81,7 +81,8 @@ std::optional<StoreyedDocument> ifcBuilding(std::string_view bytes, const std::s
 bool hasPlaced(const Document& document, bool (*is_meant)(const SensorKind&)) {
     return std::any_of(document.records.begin(), document.records.end(), [&](const Record& r) {
         const SensorKind* const kind = sensorKind(r.keyword());
-        return kind != nullptr && is_meant(*kind) && (r.has("at") || r.has("on"));
+        return kind != nullptr && is_meant(*kind) &&
+               (r.has("at") || r.has("on") || kind->place != nullptr);
     });
 }
 

@@ -218,7 +218,8 @@ bool hasPlaced(const StoreyedDocument& building, bool (*is_meant)(const SensorKi
         return std::any_of(
             storey.room->records.begin(), storey.room->records.end(), [&](const Record& record) {
                 const SensorKind* const kind = sensorKind(record.keyword());
-                return kind != nullptr && is_meant(*kind) && (record.has("at") || record.has("on"));
+                return kind != nullptr && is_meant(*kind) &&
+                       (record.has("at") || record.has("on") || kind->place != nullptr);
             });
     });
 }

@@ -231,7 +231,7 @@ class Viewer {
         }
         std::stable_sort(views_.begin(), views_.end(),
                          [&](const SensorView& a, const SensorView& b) {
-                             return sensorOf(a).model.index() < sensorOf(b).model.index();
+                             return kindRank(sensorOf(a).model) < kindRank(sensorOf(b).model);
                          });
     }
     void prepareWorlds() {
@@ -513,8 +513,8 @@ void addOutside(std::span<const std::shared_ptr<const OutsideView>> outside, std
             sensorViewOf(*outside[i], own + i, grid, scene.environment.limits(), options));
     std::stable_sort(coverage.sensors.begin(), coverage.sensors.end(),
                      [&](const SensorView& a, const SensorView& b) {
-                         return scene.sensors[a.index].model.index() <
-                                scene.sensors[b.index].model.index();
+                         return kindRank(scene.sensors[a.index].model) <
+                                kindRank(scene.sensors[b.index].model);
                      });
 }
 

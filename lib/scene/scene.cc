@@ -317,7 +317,7 @@ class Resolver {
         const Record& record = records_[i];
         SensorModel model = kind.read(record, deviceOf(record, devices_));
         if (kind.look_up != nullptr) kind.look_up(model, record, room_);
-        const auto place = placeOf(record);
+        const auto place = placeOf(record, kind);
         if (!place) {
             if (kind.is_arranged) out_.pending.push_back({ids_[i], record, std::move(model)});
             return;
@@ -328,9 +328,12 @@ class Resolver {
     }
 
     /// Computes the pose of a sensor; empty if it is pending.
-    std::optional<Carriers::Place> placeOf(const Record& sensor) {
+    std::optional<Carriers::Place> placeOf(const Record& sensor, const SensorKind& kind) {
         if (sensor.has("on")) return carriers_.place(sensor);
         if (sensor.has("at")) return Carriers::Place{poseOf(sensor), std::nullopt};
+        if (kind.place != nullptr)
+            if (const auto pose = kind.place(sensor, room_))
+                return Carriers::Place{*pose, std::nullopt};
         return std::nullopt;
     }
 

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "sense/added_reading.h"
 #include "sense/depth.h"
 #include "sense/illuminance.h"
 #include "sense/inertia.h"
@@ -69,14 +70,15 @@ struct ContactState {
 
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
-using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState,
-                                  ContactState, RfidTags, UwbRanges, SoundLevel, Illuminance,
-                                  Inertia, MoteReport, Temperature, MatState, GateState>;
+using ReadingValue =
+    std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState, ContactState,
+                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MoteReport, Temperature,
+                 AddedReading, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
-using Reading =
-    std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState, ContactState,
-                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MoteReport, Temperature>;
+using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
+                             ContactState, RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia,
+                             MoteReport, Temperature, AddedReading>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

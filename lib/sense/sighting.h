@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sense: the movers that a sensor with a field of view sees.
+// The movers that a sensor with a field of view sees.
 #pragma once
 
 #include <cstddef>

@@ -39,6 +39,7 @@ void checkUnplaced(CheckContext& context, std::size_t record, std::vector<Findin
     const Record& sensor = context.scene.records[record];
     const SensorKind* const kind = sensorKind(sensor.keyword());
     if (kind == nullptr || !kind->is_read || sensor.has("at") || sensor.has("on")) return;
+    if (context.placed_of[record] != nullptr) return;  // by its kind
     findings.push_back(context.finding(record, Severity::Warning, {},
                                        " has no position and takes no readings",
                                        std::string("give it `at` or `on`") +

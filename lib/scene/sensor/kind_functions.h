@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of SensorKind that several kinds share. Private to lib/scene/sensor.
+// Functions of SensorKind that several kinds share, those of extensions too.
 #pragma once
 
 #include "scene/sensor/field_of_view.h"
@@ -10,7 +10,7 @@ namespace ispace {
 
 template <typename Parameters>
 SensorModel readModel(const Record& record, const Record* device) {
-    return parametersOf<Parameters>(record, device);
+    return modelOf(parametersOf<Parameters>(record, device));
 }
 
 template <typename Parameters>
@@ -21,7 +21,7 @@ FieldOfView fieldOfViewOf(const Sensor& sensor) {
 /// The bearings of a sensor that sees an interval of `fov_x` about its axis.
 template <typename Parameters>
 BearingSpan windowBearings(const SensorModel& model) {
-    const auto& window = std::get<Parameters>(model);
+    const auto& window = *tryModel<Parameters>(model);
     return {-0.5 * window.fov_x, 0.5 * window.fov_x, window.max_range};
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <type_traits>
 
 #include "env/environment.h"
@@ -42,8 +43,12 @@ bool isOmnidirectional(const SensorModel& model, const Pose3& mount) {
 }
 
 std::optional<FieldOfView> fieldOfView(const Sensor& sensor) {
-    const auto view = kindOf(sensor.model).field_of_view;
-    return view == nullptr ? std::nullopt : std::optional(view(sensor));
+    const auto view_of = kindOf(sensor.model).field_of_view;
+    if (view_of == nullptr) return std::nullopt;
+    FieldOfView view = view_of(sensor);
+    if (const auto* const added = std::get_if<AddedSensor>(&sensor.model))
+        view.max_range = std::min(view.max_range, added->max_range);
+    return view;
 }
 
 Pose3 poseOf(const Record& record) {
@@ -110,10 +115,21 @@ Schema schemaOf(const SensorKind& kind) {
     return schema;
 }
 
+std::vector<const SensorKind*>& kinds() {
+    constexpr std::size_t kBehind = Rows<SensorModel>::kOnFloor + 1;  // and AddedSensor
+    static std::vector<const SensorKind*> all(kRows.begin(), kRows.end() - kBehind);
+    return all;
+}
+
 }  // namespace
 
-std::span<const SensorKind* const> sensorKinds() {
-    return std::span(kRows).first(kRows.size() - Rows<SensorModel>::kOnFloor);
+const SensorKind AddedSensor::kKind = {.keyword = "", .noun = "sensor", .perceives = false};
+
+std::span<const SensorKind* const> sensorKinds() { return kinds(); }
+
+void addSensorKind(const SensorKind& kind) {
+    assert(!kind.is_read || (kind.measure != nullptr && kind.reading != nullptr));
+    if (sensorKind(kind.keyword) == nullptr) kinds().push_back(&kind);
 }
 
 const SensorKind* sensorKind(std::string_view keyword) {
@@ -124,7 +140,19 @@ const SensorKind* sensorKind(std::string_view keyword) {
     return found == kinds.end() ? nullptr : *found;
 }
 
-const SensorKind& kindOf(const SensorModel& model) { return *kRows[model.index()]; }
+const SensorKind& kindOf(const SensorModel& model) {
+    const auto* const added = std::get_if<AddedSensor>(&model);
+    return added != nullptr ? added->kind() : *kRows[model.index()];
+}
+
+std::size_t kindRank(const SensorModel& model) {
+    const auto* const added = std::get_if<AddedSensor>(&model);
+    if (added == nullptr) return model.index();
+    const auto known = sensorKinds();
+    return kRows.size() +
+           static_cast<std::size_t>(std::find(known.begin(), known.end(), &added->kind()) -
+                                    known.begin());
+}
 
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {
     std::vector<std::string_view> keywords;

@@ -39,12 +39,12 @@ struct Sensor {
 
     template <typename Model>
     [[nodiscard]] bool is() const {
-        return std::holds_alternative<Model>(model);
+        return tryAs<Model>() != nullptr;
     }
     /// \pre is<Model>()
     template <typename Model>
     [[nodiscard]] const Model& as() const {
-        return std::get<Model>(model);
+        return *tryAs<Model>();
     }
     template <typename Model>
     [[nodiscard]] Model& as() {
@@ -53,7 +53,7 @@ struct Sensor {
     /// Returns null for another kind.
     template <typename Model>
     [[nodiscard]] const Model* tryAs() const {
-        return std::get_if<Model>(&model);
+        return tryModel<Model>(model);
     }
     /// Returns true if this robot carries it.
     [[nodiscard]] bool isOn(std::size_t robot) const { return mount && mount->robot == robot; }
@@ -117,8 +117,11 @@ struct RoomRecords {
     mutable std::map<std::type_index, std::any> lists = {};
 };
 
+struct Moment;
+struct ReadingKind;
+
 /// One kind of sensor, with all its properties that other folders use: kKind of its parameters,
-/// which kinds.h lists.
+/// which kinds.h lists, or an extension adds.
 struct SensorKind {
     std::string_view keyword;            ///< of its records
     std::string_view noun;               ///< its name in messages
@@ -153,7 +156,25 @@ struct SensorKind {
     bool follows_poses = false;  ///< `scan --poses` can move it
     /// A point counts as covered if this many of the kind see it.
     std::size_t together = 1;
+
+    /// Returns the pose of a sensor without `at` and `on` by other records, as above its door;
+    /// empty without one. Null: no such sensor has a pose. \throws FormatError
+    std::optional<Pose3> (*place)(const Record& record, const RoomRecords& room) = nullptr;
+
+    // Of kinds that extensions add; the readings of others are listed in sense/reading.h.
+    /// Takes a reading, all at once, see Moment. The surfaces that stop its rays are prepared if it
+    /// has rays.
+    std::any (*measure)(const Moment& now) = nullptr;
+    /// Continues from an earlier reading, of a sensor with memory. Null: it has none.
+    void (*follow)(const std::any& before, std::any& now) = nullptr;
+    const ReadingKind* reading = nullptr;  ///< the fields, formats and topics of its readings
 };
+
+/// Adds a kind, for the program: call it before any scene is read. Its records are placements,
+/// which scan reads, run and record as those of other kinds.
+/// \param kind kKind of its parameters, see AddedSensor; it outlives all scenes
+/// \pre if it is read, it has `measure` and `reading`
+void addSensorKind(const SensorKind& kind);
 
 /// Returns the kinds of Scene::sensors, in the order in which reports list them: all but those on
 /// the floor.
@@ -162,6 +183,8 @@ std::span<const SensorKind* const> sensorKinds();
 const SensorKind* sensorKind(std::string_view keyword);
 /// Returns the kind of a model.
 const SensorKind& kindOf(const SensorModel& model);
+/// Returns the rank of its kind in the order in which reports list kinds.
+std::size_t kindRank(const SensorModel& model);
 /// Returns the keywords of the kinds for which `flag` holds, in the order of the table.
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag);
 /// Returns the keywords of the kinds that `is_meant` selects, in the order of the table.

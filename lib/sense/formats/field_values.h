@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/sense/formats: values of fields.
+// Values of fields, for the tables of kinds.
 #pragma once
 
 #include <cstddef>

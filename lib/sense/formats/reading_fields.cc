@@ -277,6 +277,8 @@ const ReadingKind DepthFrame::kKind = {
             return cloudOf(sensor.as<Ranger>(), std::get<DepthFrame>(reading), in);
         }};
 
+const ReadingKind AddedReading::kKind = {.fields = {}};
+
 const ReadingKind Photo::kKind = {.fields = kCameraFields, .topics = kCameraTopics};
 
 std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
@@ -295,6 +297,7 @@ std::vector<ReadingView> viewsOf(const Sensor& sensor, const Reading& reading,
 }
 
 const ReadingKind& readingKind(const SensorModel& model) {
+    if (const auto* const added = std::get_if<AddedSensor>(&model)) return *added->kind().reading;
     return *kRowsOf<ReadingValue>[model.index()];
 }
 

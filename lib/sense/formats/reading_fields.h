@@ -27,6 +27,13 @@ struct PointersTo<std::variant<Ones...>> {
     using Type = std::variant<std::monostate, const Ones*...>;
 };
 
+/// True for a value in the list, false for that of a kind which an extension adds.
+template <typename One, typename Values = ReadingValue>
+constexpr bool kIsListedReading = false;
+template <typename One, typename... Values>
+constexpr bool kIsListedReading<One, std::variant<Values...>> = (std::is_same_v<One, Values> ||
+                                                                 ...);
+
 /// A reading, or one scan of a sweep, with all inputs of its fields. Refers to its arguments.
 struct ReadingView {
     using Value = PointersTo<ReadingValue>::Type;
@@ -40,7 +47,10 @@ struct ReadingView {
 
     template <typename One>
     [[nodiscard]] const One& as() const {
-        return *std::get<const One*>(value);
+        if constexpr (kIsListedReading<One>)
+            return *std::get<const One*>(value);
+        else
+            return std::get<const AddedReading*>(value)->as<One>();
     }
 };
 

@@ -80,7 +80,7 @@ class Csv final : public FormatBase {
     [[nodiscard]] std::string header() const override { return csvHeader(sensors_.read.front()); }
     void checkStream() const override {
         for (const Sensor& one : sensors_.read)
-            if (one.model.index() != sensors_.read.front().model.index())
+            if (&kindOf(one.model) != &kindOf(sensors_.read.front().model))
                 refuse("csv", "sensors of one kind", one);
     }
     [[nodiscard]] std::string whole(std::size_t index, const Reading& reading) const override {
