@@ -27,6 +27,9 @@
 #ifdef ISPACE_HAS_CURTAINS
 #include "extensions/curtains/curtain.h"
 #endif
+#ifdef ISPACE_HAS_DOORCOUNTERS
+#include "extensions/doorcounters/doorcounter.h"
+#endif
 #ifdef ISPACE_HAS_EVENNESS
 #include "extensions/evenness/even_objective.h"
 #endif
@@ -136,6 +139,9 @@ bool addFormats() {
 #ifdef ISPACE_HAS_CURTAINS
     addSceneSchemas(curtainSchemas());
     addCurtains();
+#endif
+#ifdef ISPACE_HAS_DOORCOUNTERS
+    addDoorCounters();
 #endif
 #ifdef ISPACE_HAS_GAZEBO
     addImporters(gazeboImporters());
