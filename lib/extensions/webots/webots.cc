@@ -117,10 +117,9 @@ class WebotsReader {
     }
 
     [[nodiscard]] static std::string textOf(const VrmlNode& node, std::string_view field,
-                                            std::string standard) {
+                                            const std::string& standard) {
         const VrmlValue* value = node.field(field);
-        return value == nullptr || value->texts.empty() ? std::move(standard)
-                                                        : value->texts.front();
+        return value == nullptr || value->texts.empty() ? standard : value->texts.front();
     }
 
     template <std::size_t kCount>
@@ -254,7 +253,7 @@ class WebotsReader {
         WorldBox box;
         for (Eigen::Index i = 0; i < 3; ++i)
             box.size[static_cast<std::size_t>(i)] = scale(i) * size(i);
-        box.opening = std::move(opening);
+        box.opening = opening;
         box.is_wall = is_wall;
         Transform pose = around.frame.pose;
         pose.translate(Vector3d(scale.cwiseProduct(center)));

@@ -403,11 +403,11 @@ class WorldImporter {
         const auto& [opening, whole] = *wall.opening;
         const double length = distance(line.a, line.b);
         const Vec2 along = 1 / length * (line.b - line.a);
-        const auto onLine = [&](Point2 p) {
+        const auto on_line = [&](Point2 p) {
             return wholeMicrometres(line.a +
                                     std::clamp(dot(p - line.a, along), 0.0, length) * along);
         };
-        const Point2 from = onLine(whole.a), to = onLine(whole.b);
+        const Point2 from = on_line(whole.a), to = on_line(whole.b);
         if (from == to) {
             ++world_.left_out[opening.is_window ? "window" : "door"];
             return;

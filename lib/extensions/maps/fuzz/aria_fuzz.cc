@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Maps of ARIA and MobileSim, with the points of their DATA as obstacles.
-#include "fuzz.h"
 #include "extensions/maps/maps.h"
+#include "fuzz.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ImportOptions options;
