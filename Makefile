@@ -4,6 +4,8 @@
 BUILD = build
 SANITIZED = build-asan
 RACES = build-tsan
+CORE = build-core
+EXTENSIONS = all
 prefix = /usr/local
 JOBS = $(shell nproc)
 FUZZ_SECONDS = 60
@@ -11,11 +13,12 @@ TORTURE_MINUTES = 10
 # Newer compilers warn of more than GCC 12 of Debian 12: their warnings do not end a build.
 WERROR = $(if $(filter 12 12.%,$(shell $${CXX:-c++} -dumpversion 2>/dev/null)),ON,OFF)
 
-configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev -DISPACE_WERROR=$(WERROR)
+configure = cmake -S . $$(command -v ninja >/dev/null && echo -G Ninja) -Wno-dev -DISPACE_WERROR=$(WERROR) \
+	-DISPACE_EXTENSIONS="$(EXTENSIONS)"
 build = cmake --build $(1) -j $(JOBS)
 
 .NOTPARALLEL:
-.PHONY: all help deps demo experiments check sanitized races bench fuzz torture format lint install package source-package package-check clean
+.PHONY: all help deps demo experiments check core sanitized races bench fuzz torture format lint install package source-package package-check clean
 
 all: $(BUILD)/configured
 	$(call build,$(BUILD))
@@ -26,6 +29,7 @@ help:
 	@echo "make demo        deps, build, and run the pipeline on a furnished room"
 	@echo "make experiments deps, build, and run the thesis' experiments: one report beside its figures"
 	@echo "make check       deps, build, formatting, all tests"
+	@echo "make core        deps, build of the core without extensions in $(CORE), its tests"
 	@echo "make sanitized   deps, build with AddressSanitizer and UBSan, unit and golden tests"
 	@echo "make races       deps, build with ThreadSanitizer, tests of threaded code"
 	@echo "make bench       deps, build, benchmarks"
@@ -39,7 +43,7 @@ help:
 	@echo "                 the commit as a Debian source package, in $(BUILD)/source-package"
 	@echo "make package-check"
 	@echo "                 the same, and install and use them on a bare Debian (root rights, debootstrap)"
-	@echo "make clean       remove $(BUILD), $(SANITIZED), $(RACES) and build-fuzz"
+	@echo "make clean       remove $(BUILD), $(CORE), $(SANITIZED), $(RACES), build-fuzz"
 
 deps:
 	@.ci/deps build check lint
@@ -62,6 +66,12 @@ check:
 	@$(MAKE) --no-print-directory all
 	@.ci/validator $(BUILD)/npm
 	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-label-summary --progress
+
+core:
+	@.ci/deps build check
+	@$(MAKE) --no-print-directory BUILD=$(CORE) EXTENSIONS= $(CORE)/configured
+	$(call build,$(CORE))
+	ctest --test-dir $(CORE) -j $(JOBS) -L core --output-on-failure --no-label-summary --progress
 
 sanitized:
 	@.ci/deps build check
@@ -122,7 +132,7 @@ package-check: package
 	@.ci/package-test $(BUILD) || [ $$? -eq 77 ]
 
 clean:
-	rm -rf $(BUILD) $(SANITIZED) $(RACES) build-fuzz
+	rm -rf $(BUILD) $(CORE) $(SANITIZED) $(RACES) build-fuzz
 
 $(BUILD)/configured:
 	$(configure) -B $(BUILD) -DCMAKE_BUILD_TYPE=Release

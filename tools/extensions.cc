@@ -244,19 +244,19 @@ std::span<const MakeJudge> runJudges() {
     return judges;
 }
 
-std::span<const MakeBridge> runBridges() {
-    static const std::vector<MakeBridge> bridges = {
+std::span<const BridgeRow> runBridges() {
+    static const std::vector<BridgeRow> bridges = {
 #ifdef ISPACE_HAS_WIRE
-        makeWireOptions,
+        {"wire", makeWireOptions},
 #endif
 #ifdef ISPACE_HAS_WEB
-        makeWebOptions,
+        {"web", makeWebOptions},
 #endif
 #ifdef ISPACE_HAS_ROS
-        makeRosOptions,
+        {"ros", makeRosOptions},
 #endif
 #ifdef ISPACE_HAS_MQTT
-        makeMqttOptions,
+        {"mqtt", makeMqttOptions},
 #endif
     };
     return bridges;

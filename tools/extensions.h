@@ -23,7 +23,7 @@ std::span<const MakeObjective> arrangeObjectives();
 std::span<const MakeJudge> runJudges();
 
 /// Returns the bridges that extensions add to runs of simrun.
-std::span<const MakeBridge> runBridges();
+std::span<const BridgeRow> runBridges();
 
 /// Returns the roles that extensions add to the protocol of simrun.
 std::span<const MakeRoleService> roleServices();

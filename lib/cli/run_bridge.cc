@@ -9,19 +9,23 @@ Endpoint parsePort(const std::string& text) {
     return parseEndpoint(text.find(':') == std::string::npos ? "127.0.0.1:" + text : text);
 }
 
-BridgeExtensions::BridgeExtensions(std::span<const MakeBridge> rows) {
+BridgeExtensions::BridgeExtensions(std::span<const BridgeRow> rows) : rows_(rows) {
     groups_.reserve(rows.size());
-    for (const MakeBridge make : rows) groups_.push_back(make());
+    for (const BridgeRow& row : rows) groups_.push_back(row.make());
 }
 
 void BridgeExtensions::declare(CommandLine& line) {
     const auto before = static_cast<std::ptrdiff_t>(line.names().size());
-    for (const auto& group : groups_) group->declare(line);
     if (!groups_.empty())
         line.texts("--allow", "CIDR", allowed_,
                    "machines besides this one that may use ports of devices and --ros2, e.g. "
                    "192.168.1.0/24",
                    Enters::Nothing);
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+        line.extension(std::string(rows_[i].extension));
+        groups_[i]->declare(line);
+    }
+    line.extension("");
     const std::vector<std::string> names = line.names();
     options_.assign(names.begin() + before, names.end());
 }

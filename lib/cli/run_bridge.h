@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/json_writer.h"
@@ -44,7 +45,7 @@ struct BridgeRun {
 class BridgeGroup {
   public:
     virtual ~BridgeGroup() = default;
-    /// Declares the options, bound to members, in the tool's group of the server.
+    /// Declares the options, bound to members. The group begins with line.group(HEADING).
     virtual void declare(CommandLine& line) = 0;
     /// Checks the options; opens no file. \throws UsageError
     virtual void take(BridgeRules& rules) = 0;
@@ -62,14 +63,17 @@ class BridgeGroup {
 };
 
 /// A row of tools/extensions.cc.
-using MakeBridge = std::unique_ptr<BridgeGroup> (*)();
+struct BridgeRow {
+    std::string_view extension;
+    std::unique_ptr<BridgeGroup> (*make)();
+};
 
 /// The bridges that extensions add to one command line.
 class BridgeExtensions {
   public:
     /// \param rows in the order of `--help`
-    explicit BridgeExtensions(std::span<const MakeBridge> rows);
-    /// Declares the options of all, and --allow if there are any.
+    explicit BridgeExtensions(std::span<const BridgeRow> rows);
+    /// Declares --allow in the present group, if there are bridges, and then the group of each.
     void declare(CommandLine& line);
     /// As those of BridgeGroup, for all of them.
     void take(BridgeRules& rules) const;
@@ -82,6 +86,7 @@ class BridgeExtensions {
     [[nodiscard]] const std::vector<std::string>& options() const { return options_; }
 
   private:
+    std::span<const BridgeRow> rows_;
     std::vector<std::shared_ptr<BridgeGroup>> groups_;
     std::vector<std::string> options_;
     std::vector<std::string> allowed_;

@@ -274,8 +274,6 @@ void SimrunCommand::declareServer() {
     line_.parsed(
         "--listen", "ADDR:PORT", [&o](const std::string& text) { o.listen = parseEndpoint(text); },
         "where clients connect; port 0 takes any free one (default 127.0.0.1:0)", Enters::Nothing);
-    o.bridges = std::make_shared<BridgeExtensions>(runBridges());
-    o.bridges->declare(line_);
     line_.file("--port-file", "FILE", o.port_file,
                "write the port number there when clients can connect", Enters::Nothing);
     line_.parsed(
@@ -311,6 +309,8 @@ void SimrunCommand::declareServer() {
     line_.switchFlag("--shutdown", "--no-shutdown", o.shutdown,
                      "let the request SHUTDOWN end the run (default)", "reject it",
                      Enters::Nothing);
+    o.bridges = std::make_shared<BridgeExtensions>(runBridges());
+    o.bridges->declare(line_);
 }
 
 void SimrunCommand::takeServer() {

@@ -26,6 +26,7 @@ class MqttGroup final : public BridgeGroup {
 };
 
 void MqttGroup::declare(CommandLine& line) {
+    line.group("MQTT");
     line.parsed(
         "--mqtt", "HOST:PORT", [this](const std::string& text) { broker_ = parseBroker(text); },
         "publish the states of sensors, lamps, doors and switches on a broker of MQTT, and carry "

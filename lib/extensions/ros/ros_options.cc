@@ -146,6 +146,7 @@ class RosOptions final : public BridgeGroup {
 };
 
 void RosOptions::declare(CommandLine& line) {
+    line.group("Topics of ROS");
     line.parsed(
         ports_[0].option, "[ADDR:]PORT",
         [this](const std::string& text) { ports_[0].endpoint = parsePort(text); },

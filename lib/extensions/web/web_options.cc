@@ -29,6 +29,7 @@ class WebOptions final : public BridgeGroup {
 };
 
 void WebOptions::declare(CommandLine& line) {
+    line.group("The page");
     line.parsed(
         "--web", "ADDR:PORT",
         [this](const std::string& text) {

@@ -54,6 +54,7 @@ class WireOptions final : public BridgeGroup {
 };
 
 void WireOptions::declare(CommandLine& line) {
+    line.group("Ports of devices");
     for (const WireProtocol* const protocol : wireProtocols())
         line.texts(optionOf(*protocol), std::string(protocol->device) + "=[ADDR:]PORT",
                    texts_[protocol], std::string(protocol->help), Enters::Nothing);
