@@ -65,13 +65,13 @@ check:
 	@.ci/format --check
 	@$(MAKE) --no-print-directory all
 	@.ci/validator $(BUILD)/npm
-	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure --no-label-summary --progress
+	@.ci/tests $(BUILD) $(JOBS)
 
 core:
 	@.ci/deps build check
 	@$(MAKE) --no-print-directory BUILD=$(CORE) EXTENSIONS= $(CORE)/configured
 	$(call build,$(CORE))
-	ctest --test-dir $(CORE) -j $(JOBS) -L core --output-on-failure --no-label-summary --progress
+	@.ci/tests $(CORE) $(JOBS) -L core
 
 sanitized:
 	@.ci/deps build check
