@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/extensions/mqtt: the states of a running world on a broker of MQTT, and commands to its actuators
-// from there.
+// lib/extensions/mqtt: the states of a running world on a broker of MQTT, and commands to its
+// actuators from there.
 #pragma once
 
 #include <cstdint>

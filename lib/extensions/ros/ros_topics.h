@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/extensions/ros: a running world as topics of ROS 2, for Foxglove and rosbridge. A new topic of
-// the world is a row of rosRows(); the topics of a sensor are those of its ReadingKind, as in MCAP
-// files. Uses server and below.
+// lib/extensions/ros: a running world as topics of ROS 2, for Foxglove and rosbridge. A new topic
+// of the world is a row of rosRows(); the topics of a sensor are those of its ReadingKind, as in
+// MCAP files. Uses server and below.
 #pragma once
 
 #include <array>
