@@ -47,8 +47,7 @@ class Packer {
 /// Packed bytes are not those of their writer; the reader knows no file.
 class PackedError : public FormatError {
   public:
-    PackedError()
-        : FormatError({"", 0, 0, "what an earlier run or another shard left is not whole"}) {}
+    PackedError() : FormatError({"", 0, 0, "the part of an earlier run is incomplete"}) {}
 };
 
 /// Reads the bytes of a Packer. \throws PackedError if there are too few bytes

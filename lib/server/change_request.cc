@@ -307,7 +307,7 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
             if (room == rooms.size())
                 return fail(404, excerpt(word.substr(at)) + " names no storey, as in " +
                                      rooms.front().id + "/desk1");
-            if (found && *found != room) return fail(400, "a request is about one storey");
+            if (found && *found != room) return fail(400, "a request needs one storey");
             const std::string whole = word.substr(at, word.find('.', slash) - at);
             if (whole.find_first_of("*?[") != std::string::npos)
                 return fail(400, "in a building ids are without globs");

@@ -360,7 +360,7 @@ std::string reasonForNothing(const ArrangeWork& work, const Arrangement& arrange
         return "ultrasound covers nothing: at least " + std::to_string(kMinReceivers) +
                " receivers have to hear a tag, here are " + std::to_string(receivers);
     if (times > 1 && together < times)
-        return "nothing counts: floor has to be seen by " + std::to_string(times) +
+        return "no floor counts: it has to be seen by " + std::to_string(times) +
                " sensors, and there are " + std::to_string(together);
     if (work.how.demand && arrangement.value == 0.0 && !arrangement.sensors.empty())
         return "the sensors see none of the " + std::string(work.how.demand->many()) +

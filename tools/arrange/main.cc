@@ -198,7 +198,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
         signal = watch.signal();
     }
     if (results && !results->trouble().empty())
-        warn(options.common, "arrange", "what was done could not be kept: " + results->trouble());
+        warn(options.common, "arrange", "results could not be stored: " + results->trouble());
     const auto rules = shard ? std::nullopt : cameraRulesOf(work, arrangement);
     if (shard)
         writeDependencies(options.common, work.files);

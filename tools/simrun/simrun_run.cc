@@ -441,7 +441,8 @@ void CollisionLog::tell() {
         if (is_known) continue;
         last->second = {std::string(collision.into), at};
         warn(*options_, kTool, textOf(*world_, collision));
-        if (++count_ == kMaxCollisions) warn(*options_, kTool, "no more of these are told");
+        if (++count_ == kMaxCollisions)
+            warn(*options_, kTool, "further collisions are not reported");
     }
 }
 
