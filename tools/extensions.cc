@@ -189,6 +189,13 @@ bool addFormats() {
 
 }  // namespace
 
+std::span<const std::string_view> builtExtensions() {
+    static const std::vector<std::string_view> names = {
+#include "built_extensions.inc"
+    };
+    return names;
+}
+
 std::span<const ToolExtension> toolExtensions() {
     [[maybe_unused]] static const bool formats = addFormats();
     static const std::vector<ToolExtension> extensions = [] {
@@ -223,13 +230,13 @@ std::span<const ToolExtension> toolExtensions() {
     return extensions;
 }
 
-std::span<const MakeObjective> arrangeObjectives() {
-    static const std::vector<MakeObjective> objectives = {
+std::span<const ObjectiveRow> arrangeObjectives() {
+    static const std::vector<ObjectiveRow> objectives = {
 #ifdef ISPACE_HAS_EVENNESS
-        makeEvenObjective,
+        {"evenness", makeEvenObjective},
 #endif
 #ifdef ISPACE_HAS_TRACKING
-        makeTrackObjective,
+        {"tracking", makeTrackObjective},
 #endif
     };
     return objectives;

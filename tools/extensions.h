@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "cli/extension.h"
@@ -12,12 +13,16 @@
 
 namespace ispace {
 
-/// Returns the extensions that this build has, of all tools. From the first call on their formats
-/// and records are read, see addImporters() and addSceneSchemas().
+/// Returns the names of the extensions that this build has ("cad").
+std::span<const std::string_view> builtExtensions();
+
+/// Returns the rows of all tools of the extensions that this build has, and of options that it
+/// lacks. From the first call on their formats and records are read, see addImporters() and
+/// addSceneSchemas().
 std::span<const ToolExtension> toolExtensions();
 
 /// Returns the objectives that extensions add to arrange.
-std::span<const MakeObjective> arrangeObjectives();
+std::span<const ObjectiveRow> arrangeObjectives();
 
 /// Returns the judges of runs that extensions add to simrun.
 std::span<const MakeJudge> runJudges();

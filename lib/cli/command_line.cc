@@ -73,6 +73,7 @@ struct CommandLine::Data {
     std::vector<Group> groups = {{0, kMainGroup, ""}};
     std::string extension;
     std::set<const CLI::Option*> essential;
+    std::optional<std::vector<std::string>> built;              ///< extensions, if they are known
     std::string about;                                          ///< what --help was asked for
     std::vector<std::pair<std::string, std::string>> examples;  // commands and their effects
     std::string statuses = "0 done, 1 bad data or failed I/O, 2 usage, 3 requirement not met";
@@ -442,6 +443,10 @@ void CommandLine::group(const std::string& title) {
 
 void CommandLine::extension(const std::string& name) { data_->extension = name; }
 
+void CommandLine::built(std::span<const std::string_view> extensions) {
+    data_->built.emplace(extensions.begin(), extensions.end());
+}
+
 void CommandLine::essential(std::initializer_list<std::string_view> names) {
     data_->essential.insert(data_->app.get_option("--help"));
     for (const std::string_view name : names)
@@ -500,7 +505,8 @@ void CommandLine::parse(int argc, const char* const* argv) {
         return std::find(words.begin(), words.end(), word) != words.end();
     };
     // Also of tools without reports in JSON.
-    if ((has("-V") || has("--version")) && has("--json")) throw TextRequested{versionJson(d.tool)};
+    if ((has("-V") || has("--version")) && has("--json"))
+        throw TextRequested{versionJson(d.tool, d.built)};
     // Selected at once, so that errors of the command line have that form.
     const std::vector<std::string> json = {"--errors", "json"};
     if (has("--errors=json") ||
@@ -519,7 +525,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
         d.usage(error.what());
     }
     if (d.help) throw TextRequested{helpText(d.about)};
-    if (d.version) throw TextRequested{versionText(d.tool)};
+    if (d.version) throw TextRequested{versionText(d.tool, d.built)};
     d.forEachOrdered([](const Data::Entry& entry, const std::string& text) { entry.take(text); });
     std::vector<std::string> rest = d.app.remaining();
     rest.insert(rest.end(), tail.begin(), tail.end());
@@ -582,7 +588,8 @@ std::vector<std::string> CommandLine::resultWords() const {
 
 std::string CommandLine::helpText(const std::string& about) const {
     const Data& d = *data_;
-    HelpPage page{d.tool, d.synopsis, d.summary, {}, {}, d.examples, d.statuses};
+    HelpPage page{d.tool, d.synopsis, d.summary,  {},
+                  {},     d.examples, d.statuses, d.built.has_value()};
     const auto add = [&](std::size_t index, const std::string& heading) {
         const Data::Entry& entry = d.entries[index];
         page.options.push_back({heading, signature(*entry.option, entry.value), entry.help});

@@ -7,6 +7,7 @@
 #include <initializer_list>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,6 +47,8 @@ class CommandLine {
     void group(const std::string& title);
     /// The groups from here on belong to this extension, "" to the tool.
     void extension(const std::string& name);
+    /// Names the extensions of this build, for --version.
+    void built(std::span<const std::string_view> extensions);
     /// Names the options that `--help` lists ("--output"); the others are a line for each group.
     /// Without this call it lists all. \pre they are declared
     void essential(std::initializer_list<std::string_view> names);

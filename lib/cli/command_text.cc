@@ -57,8 +57,12 @@ std::string helpText(const HelpPage& page) {
             std::string name = "  " + group.word;
             name.resize(std::max(name.size() + 2, kWordColumn), ' ');
             std::string title = group.title;
-            title.front() =
-                static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
+            const auto is_upper = [&](std::size_t i) {
+                return std::isupper(static_cast<unsigned char>(title[i])) != 0;
+            };
+            if (title.size() < 2 || !is_upper(1))  // no abbreviation
+                title.front() =
+                    static_cast<char>(std::tolower(static_cast<unsigned char>(title.front())));
             if (!group.extension.empty()) title += " (extension " + group.extension + ")";
             out += name;
             appendWrapped(out, title, name.size(), kWordColumn);
@@ -70,21 +74,32 @@ std::string helpText(const HelpPage& page) {
         appendWrapped(out, effect, 6, 6);
     }
     out += "\nExit status: " + page.statuses + ".\n";
-    out += "Details: man " + page.tool + "\n";
+    out += "Details: man " + page.tool +
+           (page.has_extensions ? "; --version lists the extensions of this build\n" : "\n");
     return out;
 }
 
-std::string versionText(const std::string& tool) {
-    return tool + " (ispace) " + std::string(version()) +
-           "\nLicence GPL-3.0-or-later; there is no warranty.\n";
+std::string versionText(const std::string& tool,
+                        const std::optional<std::vector<std::string>>& extensions) {
+    std::string out = tool + " (ispace) " + std::string(version()) +
+                      "\nLicence GPL-3.0-or-later; there is no warranty.\n";
+    if (!extensions) return out;
+    std::string names = "Extensions:";
+    for (const std::string& name : *extensions) names.append(" ").append(name);
+    appendWrapped(out, extensions->empty() ? names + " none" : names, 0, 2);
+    return out;
 }
 
-std::string versionJson(const std::string& tool) {
+std::string versionJson(const std::string& tool,
+                        const std::optional<std::vector<std::string>>& extensions) {
     JsonWriter json;
-    beginReport(json, "ispace-version/1", tool)
-        .key("licence")
-        .value("GPL-3.0-or-later")
-        .endObject();
+    beginReport(json, "ispace-version/1", tool).key("licence").value("GPL-3.0-or-later");
+    if (extensions) {
+        json.key("extensions").beginArray();
+        for (const std::string& name : *extensions) json.value(name);
+        json.endArray();
+    }
+    json.endObject();
     return json.take() + '\n';
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,14 +25,18 @@ struct HelpPage {
     std::vector<Group> groups;
     std::vector<std::pair<std::string, std::string>> examples;  ///< commands and their effects
     std::string statuses;                                       ///< meanings of the exit statuses
+    bool has_extensions = false;                                ///< versionText() lists them
 };
 
 /// Formats the page in lines of at most 79 characters where words allow it.
 std::string helpText(const HelpPage& page);
 
 /// Returns the text of --version, and of --version --json.
-std::string versionText(const std::string& tool);
-std::string versionJson(const std::string& tool);
+/// \param extensions of this build, if they are known
+std::string versionText(const std::string& tool,
+                        const std::optional<std::vector<std::string>>& extensions);
+std::string versionJson(const std::string& tool,
+                        const std::optional<std::vector<std::string>>& extensions);
 
 /// Returns the name of an operand as the history of a product has it: without folders, quoted for
 /// the shell, "-" for a stream.

@@ -7,9 +7,10 @@
 
 namespace ispace {
 
-ObjectiveExtensions::ObjectiveExtensions(std::span<const MakeObjective> rows) {
+ObjectiveExtensions::ObjectiveExtensions(std::span<const ObjectiveRow> rows) {
     members_.reserve(rows.size());
-    for (const MakeObjective make : rows) members_.push_back({make()});
+    for (const ObjectiveRow& row : rows)
+        members_.push_back({std::string(row.extension), row.make()});
 }
 
 std::string ObjectiveExtensions::help() const {
@@ -28,7 +29,9 @@ std::string ObjectiveExtensions::words() const {
 void ObjectiveExtensions::declare(CommandLine& line) {
     for (Member& member : members_) {
         const std::size_t before = line.names().size();
+        line.extension(member.extension);
         member.group->declare(line);
+        line.extension("");
         const std::vector<std::string> names = line.names();
         member.options.assign(names.begin() + static_cast<std::ptrdiff_t>(before), names.end());
     }

@@ -45,13 +45,16 @@ class ObjectiveGroup {
 };
 
 /// A row of tools/extensions.cc.
-using MakeObjective = std::unique_ptr<ObjectiveGroup> (*)();
+struct ObjectiveRow {
+    std::string_view extension;
+    std::unique_ptr<ObjectiveGroup> (*make)();
+};
 
 /// The objectives that extensions add to one command line.
 class ObjectiveExtensions {
   public:
     /// \param rows in the order of `--help`
-    explicit ObjectiveExtensions(std::span<const MakeObjective> rows);
+    explicit ObjectiveExtensions(std::span<const ObjectiveRow> rows);
 
     /// Returns "; WORD, HELP" for each of them.
     [[nodiscard]] std::string help() const;
@@ -66,6 +69,7 @@ class ObjectiveExtensions {
 
   private:
     struct Member {
+        std::string extension;
         std::shared_ptr<ObjectiveGroup> group;
         std::vector<std::string> options = {};  ///< declared by the group
     };

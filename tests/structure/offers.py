@@ -39,7 +39,9 @@ for name, rows in offers.items():
         elif offer not in known[owner] and f"the extension {name}, which" not in said(owner, offer):
             faults.append(f"{name}: {owner} has no {offer}")
 
-# Groups that the tools list under an extension.
+# The page that fits a screen, and groups that the tools list under an extension.
+faults += [f"{tool} --help has {n} lines, wanted at most 90" for tool in TOOLS
+           if (n := len(said(tool, "--help").splitlines())) > 90]
 for tool in TOOLS:
     for word, title in re.findall(r"^  (\w+) {2,}(.*(?:\n {10,}.*)*)", said(tool, "--help"), re.MULTILINE):
         about = re.search(r"\(extension\s+(\w+)\)", title)

@@ -190,6 +190,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addFileOptions();
     line_.group("Jobs");
     addShareOptions();
+    line_.built(builtExtensions());
     ToolExtensions extensions(toolExtensions(), "arrange");
     extensions.declare(line_);
     addSceneRules(line_, options_.rules);
@@ -292,8 +293,8 @@ void ArrangeCommand::addGoalOptions() {
             options_.how.objective =
                 options_.objective ? ObjectiveChoice() : readObjective(text, objectives_.words());
         },
-        "quantity that the layout maximises: coverage (default); path:FROM,TO, the length for "
-        "which an intruder between two zones is seen on the way that is seen least; localise[:M], "
+        "quantity to maximise: coverage (default); path:FROM,TO, the length for which an intruder "
+        "between two zones is seen on the way that is seen least; localise[:M], "
         "small errors of positions of tags and people, none of which counts above M (default 1)" +
             objectives_.help(),
         Enters::History);

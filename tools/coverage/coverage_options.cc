@@ -280,6 +280,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "draw the sites that arrange --trace wrote to this file on the map, coloured by "
               "their best value",
               Enters::Nothing);
+    line.built(builtExtensions());
     ToolExtensions extensions(toolExtensions(), "coverage");
     extensions.declare(line);
     addSceneRules(line, o.rules);

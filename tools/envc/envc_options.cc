@@ -316,6 +316,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addImportOptions(line, options.import);
     addStoreyOption(line, options.rules,
                     "of IFC also by number, from 1 for the lowest; default: all storeys");
+    line.built(builtExtensions());
     ToolExtensions extensions(toolExtensions(), "envc");
     extensions.declare(line);
     addSceneRules(line, options.rules);

@@ -43,6 +43,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
           "scan", "[ENV] [LAYOUT]",
           "Simulate the readings of sensors: lasers, 3-D rangers, cameras, ultrasonic receivers. "
           "Without LAYOUT read it from stdin unless ENV holds sensors with a pose.") {
+    line_.built(builtExtensions());
     ToolExtensions extensions(toolExtensions(), "scan");
     declare(extensions);
     line_.essential({"--version", "--to", "--select", "--frames", "--noise", "--poses", "--model",

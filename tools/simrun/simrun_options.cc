@@ -57,6 +57,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     declareJudgement();
     line_.group("The server");
     declareServer();
+    line_.built(builtExtensions());
     ToolExtensions extensions(toolExtensions(), "simrun");
     extensions.declare(line_);
     addSceneRules(line_, options_.rules);

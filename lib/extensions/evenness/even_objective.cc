@@ -14,7 +14,7 @@ class EvenObjective : public ObjectiveGroup {
   public:
     [[nodiscard]] std::string_view word() const override { return "even"; }
     [[nodiscard]] std::string_view help() const override {
-        return "floor that counts again for its second and third sensor, but less each time";
+        return "floor also for its second and third sensor";
     }
     void declare(CommandLine& line) override {
         constexpr int kDeepest = 8;

@@ -14,7 +14,7 @@ class TrackObjective : public ObjectiveGroup {
   public:
     [[nodiscard]] std::string_view word() const override { return "track"; }
     [[nodiscard]] std::string_view help() const override {
-        return "the time for which a tracker follows people, and crossings that are seen";
+        return "the time for which a tracker follows people";
     }
     void declare(CommandLine& line) override {
         constexpr double kLongest = 3600;
