@@ -295,7 +295,7 @@ void ArrangeCommand::addGoalOptions() {
         },
         "quantity to maximise: coverage (default); path:FROM,TO, the length for which an intruder "
         "between two zones is seen on the way that is seen least; localise[:M], "
-        "small errors of positions of tags and people, none of which counts above M (default 1)" +
+        "small errors of positions of tags and people, M at most (default 1)" +
             objectives_.help(),
         Enters::History);
     line_.texts("--zone", "ZONE", options_.zones.targets,
