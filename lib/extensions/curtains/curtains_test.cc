@@ -9,6 +9,7 @@
 #include "cli/common_options.h"
 #include "env/environment.h"
 #include "extensions/curtains/curtain.h"
+#include "extensions/curtains/curtains_test.h"
 #include "record/edit.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -24,12 +25,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 Scene sceneOf(const std::string& curtain) {
-    static const bool added = [] {
-        addSceneSchemas(curtainSchemas());
-        addCurtains();
-        return true;
-    }();
-    EXPECT_TRUE(added);
+    testing::addCurtainsOnce();
     const std::string room =
         "#env 1\nispace size=8,4\nzone id=left at=-2,0 size=4,4\nzone id=right at=2,0 size=4,4\n" +
         curtain + "human id=ann at=-2,0\n";

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "extensions/curtains/curtain.h"
+#include "extensions/curtains/curtains_test.h"
 #include "extensions/mqtt/mqtt_topics.h"
 #include "scene/placement_schemas.h"
 
@@ -12,10 +12,7 @@ namespace ispace {
 namespace {
 
 TEST(Curtain, IsACoverOfHomeAssistant) {
-    if (sceneSchemas().find("curtain") == nullptr) {
-        addSceneSchemas(curtainSchemas());
-        addCurtains();
-    }
+    testing::addCurtainsOnce();
     const Schema& schema = *sceneSchemas().find("curtain");
     const MqttThing thing{"c", "curtain", {{"drawn", "i/c/drawn", schema.find("drawn")}}};
     const std::vector<MqttMessage> messages = discoveryOf(thing, "i");

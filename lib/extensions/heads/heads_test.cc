@@ -13,6 +13,7 @@
 #include "cli/common_options.h"
 #include "extensions/heads/head.h"
 #include "extensions/heads/head_role.h"
+#include "extensions/heads/heads_test.h"
 #include "geom/rotation.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -30,12 +31,7 @@ using std::chrono::seconds;
 using Rows = std::vector<std::string>;
 
 Scene sceneOf(const std::string& records) {
-    static const bool added = [] {
-        addSceneSchemas(headSchemas());
-        addHeads();
-        return true;
-    }();
-    EXPECT_TRUE(added);
+    testing::addHeadsOnce();
     return makeScene(
         readRecordText("#env 1\nispace size=8,6\n" + records, "room.env", sceneSchemas()), nullptr,
         shippedDevices());

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cli/common_options.h"
-#include "extensions/heads/head.h"
+#include "extensions/heads/heads_test.h"
 #include "extensions/ros/ros_feed.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -19,10 +19,7 @@ namespace ispace {
 namespace {
 
 TEST(Head, IsTwoJointsOfItsRobot) {
-    if (sceneSchemas().find("head") == nullptr) {
-        addSceneSchemas(headSchemas());
-        addHeads();
-    }
+    testing::addHeadsOnce();
     const Scene scene = makeScene(
         readRecordText("#env 1\nispace size=8,6\nrobot id=r\nhead id=h-1 on=r pan=90 tilt=-30\n"
                        "laser id=l on=h-1\nhead id=f\n",

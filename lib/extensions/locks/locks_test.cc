@@ -16,6 +16,7 @@
 #include "cli/common_options.h"
 #include "extensions/locks/lock.h"
 #include "extensions/locks/lock_role.h"
+#include "extensions/locks/locks_test.h"
 #include "record/edit.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -41,11 +42,7 @@ std::string flat(const std::string& door, const std::string& lobby = "") {
 }
 
 Scene sceneOf(const std::string& room, const std::string& people) {
-    static const bool added = [] {
-        addLocks();
-        return true;
-    }();
-    EXPECT_TRUE(added);
+    testing::addLocksOnce();
     const Document placed = readRecordText("#3dm 1\n" + people, "room.3dm", sceneSchemas());
     return makeScene(readRecordText(room, "room.env", sceneSchemas()), &placed, shippedDevices());
 }

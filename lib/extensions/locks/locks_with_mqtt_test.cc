@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "extensions/locks/lock.h"
+#include "extensions/locks/locks_test.h"
 #include "extensions/mqtt/mqtt_topics.h"
 #include "scene/placement_schemas.h"
 
@@ -12,7 +12,7 @@ namespace ispace {
 namespace {
 
 TEST(LockChecks, AreLocksOfHomeAssistant) {
-    if (sceneSchemas().find("door")->find("locked") == nullptr) addLocks();
+    testing::addLocksOnce();
     const Schema& door = *sceneSchemas().find("door");
     MqttThing thing{"d", "door", {}};
     for (const char* key : {"open", "locked", "forced"})

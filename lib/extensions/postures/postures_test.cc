@@ -23,6 +23,7 @@
 #include "cli/presence_ways.h"
 #include "extensions/postures/deeds.h"
 #include "extensions/postures/posture.h"
+#include "extensions/postures/postures_test.h"
 #include "record/edit.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -49,11 +50,7 @@ constexpr double kHeight = 1.7;
 constexpr std::string_view kRoom = "#env 1\nispace size=10,8\n";
 
 Scene sceneOf(const std::string& people, std::string_view room = kRoom) {
-    static const bool added = [] {
-        addPostures();
-        return true;
-    }();
-    EXPECT_TRUE(added);
+    testing::addPosturesOnce();
     const Document placed = readRecordText("#3dm 1\n" + people, "room.3dm", sceneSchemas());
     return makeScene(readRecordText(room, "room.env", sceneSchemas()), &placed, shippedDevices());
 }

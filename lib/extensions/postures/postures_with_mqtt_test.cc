@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "extensions/mqtt/mqtt_topics.h"
-#include "extensions/postures/posture.h"
+#include "extensions/postures/postures_test.h"
 #include "scene/placement_schemas.h"
 
 namespace ispace {
 namespace {
 
 TEST(Postures, AreSensorsOfHomeAssistant) {
-    if (sceneSchemas().find("human")->find("posture") == nullptr) addPostures();
+    testing::addPosturesOnce();
     const Schema& human = *sceneSchemas().find("human");
     MqttThing thing{"ann", "human", {}};
     for (const char* key : {"posture", "left_arm"})

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "cli/common_options.h"
-#include "extensions/postures/posture.h"
+#include "extensions/postures/postures_test.h"
 #include "extensions/ros/ros_feed.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -19,7 +19,7 @@ namespace ispace {
 namespace {
 
 TEST(Postures, AreMarkersOfRos) {
-    if (sceneSchemas().find("human")->find("posture") == nullptr) addPostures();
+    testing::addPosturesOnce();
     const auto marker = [](const std::string& keys) {
         const Document placed = readRecordText(
             "#3dm 1\nhuman id=ann at=1,2 heading=90 " + keys + "\n", "room.3dm", sceneSchemas());
