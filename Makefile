@@ -134,9 +134,13 @@ package-check: package
 clean:
 	rm -rf $(BUILD) $(CORE) $(SANITIZED) $(RACES) build-fuzz
 
+# Holds EXTENSIONS: another choice configures anew.
+ifneq ($(EXTENSIONS),$(shell cat $(BUILD)/configured 2>/dev/null || echo "$(EXTENSIONS)"))
+.PHONY: $(BUILD)/configured
+endif
 $(BUILD)/configured:
 	$(configure) -B $(BUILD) -DCMAKE_BUILD_TYPE=Release
-	@touch $@
+	@echo "$(EXTENSIONS)" >$@
 
 # The compile database of clang-tidy names each source.
 $(BUILD)/lint/configured:

@@ -231,14 +231,19 @@ std::span<const ToolExtension> toolExtensions() {
 }
 
 std::span<const ObjectiveRow> arrangeObjectives() {
-    static const std::vector<ObjectiveRow> objectives = {
+    static const std::vector<ObjectiveRow> objectives = [] {
+        std::vector<ObjectiveRow> rows = {
 #ifdef ISPACE_HAS_EVENNESS
-        {"evenness", makeEvenObjective},
+            {"evenness", makeEvenObjective},
 #endif
 #ifdef ISPACE_HAS_TRACKING
-        {"tracking", makeTrackObjective},
+            {"tracking", makeTrackObjective},
 #endif
-    };
+        };
+        for (const auto& [extension, owner, name] : missingOffers())
+            if (owner == "objective") rows.push_back({extension, nullptr, name});
+        return rows;
+    }();
     return objectives;
 }
 

@@ -226,8 +226,8 @@ std::string CommandLine::Data::wordOf(std::size_t group) const {
     return words.front();
 }
 
-/// Takes the word behind --help, or joined to it by =, out of a command line; it may be an option
-/// with a value, as --seed. A name of a file is an operand.
+/// Takes the word behind --help, or joined to it by =, out of a command line; the last word may be
+/// an option, as --seed. A name of a file is an operand.
 void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         constexpr std::string_view kJoined = "--help=";
@@ -239,10 +239,9 @@ void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
         if (!about.empty() || i + 1 == words.size()) return;
         std::string next = words[i + 1];
         const CLI::Option* const option = app.get_option_no_throw(next);
-        const bool asks_for_option = option != nullptr && i + 2 == words.size() &&
-                                     option->get_items_expected_min() > 0 && next.starts_with("--");
-        if (asks_for_option) next.erase(0, 2);  // its value is missing, so that it is a question
-        if (next.empty() || next.starts_with('-')) return;
+        const bool asks_for_option =
+            option != nullptr && i + 2 == words.size() && next.starts_with("--");
+        if (next.empty() || (next.starts_with('-') && !asks_for_option)) return;
         if (next.find_first_of("./") != std::string::npos) return;
         about = next;
         words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
@@ -617,18 +616,20 @@ std::string CommandLine::helpText(const std::string& about) const {
         return ispace::helpText(page);
     }
     page.examples.clear();
-    const std::vector<std::size_t> found = d.groupsAbout(about);
-    if (found.size() == 1) {
-        add_group(found.front());
-        return ispace::helpText(page);
-    }
-    // An option, and those that speak of it.
     const auto is_named = [&](std::size_t i) {
         const CLI::Option& option = *d.entries[i].option;
         return option.check_name(about) || option.check_name("--" + about);
     };
-    for (std::size_t i = 0; i < d.entries.size() && found.empty(); ++i)
+    // The word that the short page lists for a group stands for it, else that of an option.
+    const std::vector<std::size_t> found = d.groupsAbout(about);
+    const bool is_listed = found.size() == 1 && d.wordOf(found.front()) == about;
+    for (std::size_t i = 0; i < d.entries.size() && !is_listed; ++i)
         if (is_named(i)) add(i, "Option");
+    if (page.options.empty() && found.size() == 1) {
+        add_group(found.front());
+        return ispace::helpText(page);
+    }
+    // And those that speak of it.
     const std::string name = about.starts_with('-') ? about : "--" + about;
     for (std::size_t i = 0; i < d.entries.size() && !page.options.empty(); ++i)
         if (!is_named(i) && mentions(d.entries[i].help, name)) add(i, "");

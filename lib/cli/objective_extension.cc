@@ -9,8 +9,12 @@ namespace ispace {
 
 ObjectiveExtensions::ObjectiveExtensions(std::span<const ObjectiveRow> rows) {
     members_.reserve(rows.size());
-    for (const ObjectiveRow& row : rows)
-        members_.push_back({std::string(row.extension), row.make()});
+    for (const ObjectiveRow& row : rows) {
+        if (row.make == nullptr)
+            missing_.push_back(row);
+        else
+            members_.push_back({std::string(row.extension), row.make()});
+    }
 }
 
 std::string ObjectiveExtensions::help() const {
@@ -40,6 +44,10 @@ void ObjectiveExtensions::declare(CommandLine& line) {
 std::shared_ptr<const ObjectiveGroup> ObjectiveExtensions::find(std::string_view word) const {
     for (const Member& member : members_)
         if (member.group->word() == word) return member.group;
+    for (const ObjectiveRow& row : missing_)
+        if (row.missing == word)
+            throw UsageError('`' + std::string(word) + "`: it belongs to the extension " +
+                             std::string(row.extension) + ", which this build lacks");
     return nullptr;
 }
 

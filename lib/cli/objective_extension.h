@@ -47,7 +47,8 @@ class ObjectiveGroup {
 /// A row of tools/extensions.cc.
 struct ObjectiveRow {
     std::string_view extension;
-    std::unique_ptr<ObjectiveGroup> (*make)();
+    std::unique_ptr<ObjectiveGroup> (*make)();  ///< null for an objective that this build lacks
+    std::string_view missing = {};              ///< its word
 };
 
 /// The objectives that extensions add to one command line.
@@ -61,7 +62,8 @@ class ObjectiveExtensions {
     /// Returns ", WORD" for each of them.
     [[nodiscard]] std::string words() const;
     void declare(CommandLine& line);
-    /// Returns null for the word of another objective.
+    /// Returns null for the word of another objective. \throws UsageError for one that this build
+    /// lacks, with its extension
     [[nodiscard]] std::shared_ptr<const ObjectiveGroup> find(std::string_view word) const;
     /// Checks that options of an objective are given with it alone.
     /// \param asked null: an objective of the core \throws UsageError
@@ -74,6 +76,7 @@ class ObjectiveExtensions {
         std::vector<std::string> options = {};  ///< declared by the group
     };
     std::vector<Member> members_;
+    std::vector<ObjectiveRow> missing_;
 };
 
 }  // namespace ispace

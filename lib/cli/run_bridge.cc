@@ -16,11 +16,10 @@ BridgeExtensions::BridgeExtensions(std::span<const BridgeRow> rows) : rows_(rows
 
 void BridgeExtensions::declare(CommandLine& line) {
     const auto before = static_cast<std::ptrdiff_t>(line.names().size());
-    if (!groups_.empty())
-        line.texts("--allow", "CIDR", allowed_,
-                   "machines besides this one that may use ports of devices and --ros2, e.g. "
-                   "192.168.1.0/24",
-                   Enters::Nothing);
+    line.texts("--allow", "CIDR", allowed_,
+               "machines besides this one that may use ports of devices and --ros2, e.g. "
+               "192.168.1.0/24",
+               Enters::Nothing);
     for (std::size_t i = 0; i < groups_.size(); ++i) {
         line.extension(std::string(rows_[i].extension));
         groups_[i]->declare(line);

@@ -73,7 +73,7 @@ class BridgeExtensions {
   public:
     /// \param rows in the order of `--help`
     explicit BridgeExtensions(std::span<const BridgeRow> rows);
-    /// Declares --allow in the present group, if there are bridges, and then the group of each.
+    /// Declares --allow in the present group, and then the group of each.
     void declare(CommandLine& line);
     /// As those of BridgeGroup, for all of them.
     void take(BridgeRules& rules) const;

@@ -87,5 +87,5 @@ mkdir large
 status=0
 loud=("${proof[@]/#-q/--no-progress}")
 "${loud[@]}" --resume --checkpoint-interval 0 -o disk/best.3dm 2>err || status=$?
-grep -q 'could not be kept: .*No space left on device' err || fail "nobody says so: $(cat err)"
+grep -q 'results could not be stored: .*No space left on device' err || fail "nobody says so: $(cat err)"
 if [ $status -eq 0 ]; then expect_same disk/best.3dm large/best.3dm "with a full disk"; fi

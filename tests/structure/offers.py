@@ -32,6 +32,10 @@ for name, rows in offers.items():
             about = said("envc", "--check", "-", text=f"#env 1\n{keyword}{f' {key}=1' if key else ''}\n")
             if f"unknown key{'' if key else 'word'} " in about and f"the extension {name} reads" not in about:
                 faults.append(f"{name} has no record {offer}: {about}")
+        elif owner == "objective":
+            about = said("arrange", "-", "--objective", offer, text="")
+            if f"`{offer}` is not coverage" in about:
+                faults.append(f"{name} has no objective {offer}: {about}")
         elif owner == "format":
             read = any(f'importer<' in source.read_text() for source in (extensions / name).glob("*.cc"))
             if not read:

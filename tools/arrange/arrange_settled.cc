@@ -230,13 +230,14 @@ void ArrangeCommand::settleDemand() const {
     const std::string name = options_.objective
                                  ? "--objective " + std::string(options_.objective->word())
                                  : "--presence";
-    if (options_.presence && options_.objective)
-        throw UsageError(name + " and --presence count different ways: leave out one");
     constexpr const char* kOfFloor[] = {"--zone",  "--weight",   "--facing", "--robust",
                                         "--crowd", "--refine",   "--proof",  "--judge",
                                         "--reso",  "--connected"};
     const ObjectiveGroup::Counted counted =
         options_.objective ? options_.objective->counted() : ObjectiveGroup::Counted();
+    if (options_.presence && options_.objective)
+        throw UsageError(name + " counts " + std::string(counted.what) +
+                         ", --presence the ways of its own people: leave out one");
     for (const char* option : kOfFloor)
         if (line_.given(option) &&
             std::ranges::find(counted.options, std::string_view(option)) == counted.options.end())
