@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -33,6 +34,21 @@ Pose3 localPose(const Pose2& carrier, const Pose3& pose) {
 
 Pose3 onFloor(const Pose2& pose) {
     return {{pose.position.x, pose.position.y, 0}, pose.heading, {}, {}};
+}
+
+/// Returns the poses after a share of a step, which is a straight line between positions.
+MoverPoses placesBetween(const MoverPoses& from, const MoverPoses& to, double share) {
+    MoverPoses places = to;
+    const auto go = [share](const std::vector<Pose2>& before, std::vector<Pose2>& now) {
+        for (std::size_t i = 0; i < now.size(); ++i) {
+            const auto& [position, heading] = before[i];
+            now[i].position = position + share * (now[i].position - position);
+            now[i].heading = heading + share * wrapped(now[i].heading - heading);
+        }
+    };
+    go(from.robots, places.robots);
+    go(from.people, places.people);
+    return places;
 }
 
 /// The same seeds as in `scan`.
@@ -70,6 +86,7 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
         periods_.emplace_back(periodRate(sensor));
         is_heavy_.push_back(isHeavy(sensor) ? 1 : 0);
         readings_[i].pose = sensor.pose;
+        if (kindOf(sensor.model).follow != nullptr) lasting_.push_back(i);
         if (sensor.is<Ranger>()) readings_[i].value = DepthFrame();
         if (sensor.is<Camera>()) readings_[i].value = Photo();
         const auto* laser = sensor.tryAs<Laser>();
@@ -135,6 +152,7 @@ void SensorReader::jumped() {
     moved();
     floor_.forgetPlaces();
     inertial_.jumped();
+    last_places_.reset();
 }
 
 void SensorReader::begin(SimTime time, const Movers& movers) {
@@ -143,6 +161,7 @@ void SensorReader::begin(SimTime time, const Movers& movers) {
     inertial_.step(movers);
     if (trail_.isKept()) trail_.add(time, movers, std::exchange(trail_moved_, false));
     latest_.clear();
+    catchUp(time, movers);
     for (std::size_t i = 0; i < due_.size(); ++i) {
         if (due_[i] <= time && is_heavy_[i] == 0) latest_.push_back(i);
     }
@@ -154,6 +173,55 @@ void SensorReader::begin(SimTime time, const Movers& movers) {
     makeBlocks();
     unread_blocks_ = block_ends_.size();
     is_read_.assign(unread_blocks_, 0);
+}
+
+void SensorReader::skip(SimTime time, const Movers& movers) {
+    finish();
+    latest_.clear();
+    floor_.follow(movers);
+    inertial_.step(movers);
+    trail_.clear();
+    catchUp(time, movers);
+    std::vector<std::size_t> due;
+    std::copy_if(lasting_.begin(), lasting_.end(), std::back_inserter(due),
+                 [&](std::size_t i) { return due_[i] <= time; });
+    if (due.empty()) return;
+    update(due, time, movers);
+    for (const std::size_t i : due) measure(i, time);
+}
+
+/// Takes the readings of periods that began and ended within a step, of sensors that continue from
+/// their last reading.
+void SensorReader::catchUp(SimTime time, const Movers& movers) {
+    if (lasting_.empty()) return;
+    MoverPoses now(movers);
+    if (!last_places_) {
+        last_places_ = std::move(now);
+        last_time_ = time;
+        return;
+    }
+    MovingBodies bodies;
+    for (const std::size_t i : lasting_) {
+        const Sensor& sensor = sensors_[i];
+        SensorReading& reading = readings_[i];
+        while (due_[i] < time) {
+            const std::int64_t period = periods_[i].newest(due_[i]);
+            const SimTime next = periods_[i].begin(period + 1);
+            if (next > time) break;
+            const MoverPoses places = placesBetween(
+                *last_places_, now, seconds(due_[i] - last_time_) / seconds(time - last_time_));
+            reading.time = due_[i];
+            reading.seq = period;
+            if (sensor.mount || sensor.person)
+                reading.pose = poseOn(sensor, carrierIn(places, sensor));
+            if (rayCount(sensor.model) > 0) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
+            setBodies(places, {}, bodies);
+            readNow(sensor, bodies, reading);
+            due_[i] = next;
+        }
+    }
+    last_places_ = std::move(now);
+    last_time_ = time;
 }
 
 /// Divides the due sensors into blocks.

@@ -55,14 +55,9 @@ class SensorReader {
     /// Reads due sensors until all are read, or about until then. \returns true if all are read
     bool readSome(std::chrono::steady_clock::time_point until);
     void finish();
-    /// Call it after a skipped step: due sensors are read after a later one.
-    void skip(const Movers& movers) {
-        finish();
-        latest_.clear();
-        floor_.follow(movers);
-        inertial_.step(movers);
-        trail_.clear();
-    }
+    /// Call it after a skipped step: due sensors are read after a later one, but those that
+    /// continue from their last reading now.
+    void skip(SimTime time, const Movers& movers);
     /// Call it before the first reading in another scene: unchanged sensors keep their last
     /// reading, gates their counts, and zones their temperatures; scans that have begun go on.
     /// \param movers of this scene
@@ -119,6 +114,7 @@ class SensorReader {
     void complete(std::size_t sensor);
     void readBlock(std::size_t block);
     void update(std::span<const std::size_t> due, SimTime time, const Movers& movers);
+    void catchUp(SimTime time, const Movers& movers);
     void updateBodies(const Movers& movers);
     struct Stage;
     std::shared_ptr<const Stage> stage(const Movers& movers);
@@ -172,6 +168,9 @@ class SensorReader {
     std::vector<SimTime> durations_;  // of scans, rounded up to steps
     std::vector<char> is_heavy_;
     std::vector<SensorReading> readings_;
+    std::vector<std::size_t> lasting_;       // sensors that continue from their last reading
+    std::optional<MoverPoses> last_places_;  // after the last step, kept for these
+    SimTime last_time_{};                    // of that step
     std::vector<std::optional<LaserCaster>> casters_;  // of lasers
     std::vector<std::size_t> latest_;
     // Due sensors still to be read, ascending, at the time of the step; in blocks, some of which

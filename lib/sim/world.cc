@@ -363,7 +363,7 @@ void World::passTo(std::span<const RobotStatus> states) {
     Data& data = *data_;
     data.begin();
     for (std::size_t i = 0; i < states.size(); ++i) data.put(i, states[i]);
-    data.sensors.skip(data.where());
+    data.sensors.skip(data.time, data.where());
 }
 
 std::shared_ptr<const void> World::rewind(const NextScene& next) {

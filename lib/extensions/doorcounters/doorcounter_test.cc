@@ -15,7 +15,10 @@
 #include "sense/formats/reading_fields.h"
 #include "sense/moment.h"
 #include "sense/selection.h"
+#include "sim/recorder.h"
+#include "sim/replay.h"
 #include "sim/simulation.h"
+#include "support/test_folder.h"
 
 namespace ispace {
 namespace {
@@ -149,6 +152,59 @@ TEST(DoorCounter, CountsPeopleInARun) {
     const DoorCount standing = walked("human id=a at=-2,0 path=0.2,0\n", 6);
     EXPECT_EQ(standing.entered, 0);
     EXPECT_EQ(standing.tracks.size(), 1U);
+}
+
+DoorCount countIn(const World& world) {
+    return std::get<AddedReading>(world.reading(0).value).as<DoorCount>();
+}
+
+/// Three enter and one leaves within 12 s.
+const std::string kTraffic =
+    "human id=a at=-2,0 path=2,0;-2,0\nhuman id=b at=-3,0.4 path=2,0.4\n"
+    "human id=c2 at=-3.5,-0.4 path=2,-0.4\n";
+
+TEST(DoorCounter, CountsAreThoseOfTheRunAfterSeek) {
+    const Scene scene = sceneOf(kCounter + kTraffic);
+    const testing::TestFolder folder;
+    World world(scene, milliseconds(20));
+    std::vector<DoorCount> counts = {countIn(world)};
+    {
+        Recorder recorder(folder.path(), world, {}, 0);
+        for (int i = 0; i < 600; ++i) {
+            world.step();
+            recorder.record(world);
+            counts.push_back(countIn(world));
+        }
+        recorder.flush(world);
+    }
+    EXPECT_EQ(counts.back().entered, 3);
+    EXPECT_EQ(counts.back().left, 1);
+    Replay replay(folder.path());
+    World again(scene, milliseconds(20));
+    for (const std::size_t step : {600U, 150U, 400U}) {
+        replay.seek(again, static_cast<int>(step) * milliseconds(20));
+        EXPECT_EQ(countIn(again), counts[step]) << step;
+    }
+}
+
+TEST(DoorCounter, CountsBetweenTheRowsOfASparseRecord) {
+    const Scene scene = sceneOf(kCounter + kTraffic);
+    const testing::TestFolder folder;
+    World world(scene, milliseconds(20));
+    {
+        Recorder recorder(folder.path(), world, {.form = {.every = milliseconds(1000)}}, 0);
+        for (int i = 0; i < 600; ++i) {
+            world.step();
+            recorder.record(world);
+        }
+        recorder.flush(world);
+    }
+    Replay replay(folder.path());
+    World again(scene, replay.stepLength());
+    while (replay.step(again)) continue;
+    EXPECT_EQ(again.time(), world.time());
+    EXPECT_EQ(countIn(again).entered, 3);
+    EXPECT_EQ(countIn(again).left, 1);
 }
 
 TEST(DoorCounter, FieldsHaveItsCounts) {
