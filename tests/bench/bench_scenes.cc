@@ -11,6 +11,9 @@
 
 #include "arrange/placement_rules.h"
 #include "base/number.h"
+#ifdef ISPACE_HAS_CAD
+#include "extensions/cad/cad.h"
+#endif
 #include "io/importers.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -66,10 +69,17 @@ std::string sceneFile(const std::string& name) {
     return testing::sourcePath("share/scenes/") + name;
 }
 
-Scene loadScene(const std::string& file) {
-    const Document document = readDocument(file, ImportOptions(), sceneSchemas());
-    return makeScene(document, nullptr, devices());
+Document readRoom(const std::string& file) {
+#ifdef ISPACE_HAS_CAD
+    [[maybe_unused]] static const bool reads_plans = [] {
+        addImporters(cadImporters());
+        return true;
+    }();
+#endif
+    return readDocument(file, ImportOptions(), sceneSchemas());
 }
+
+Scene loadScene(const std::string& file) { return makeScene(readRoom(file), nullptr, devices()); }
 
 std::string officeText(int columns, int rows) {
     const double width = columns * kRoomWidth;

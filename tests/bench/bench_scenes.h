@@ -11,6 +11,9 @@
 
 namespace ispace::bench {
 
+/// Reads a room; plans of other programs too, if the build reads drawings.
+Document readRoom(const std::string& file);
+
 /// share/scenes/NAME, or any other environment, with the devices of share/.
 Scene loadScene(const std::string& file);
 std::string sceneFile(const std::string& name);

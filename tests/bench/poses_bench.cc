@@ -42,7 +42,7 @@ double resultOf(const std::string& layout, const std::string& key) {
 
 /// Area of the indoor region, m2; the rooms have no bodies.
 double floorOf(const std::string& room) {
-    const Document document = readDocument(room, {}, sceneSchemas());
+    const Document document = bench::readRoom(room);
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());
     return totalArea(scene.environment.indoor().parts);
 }
