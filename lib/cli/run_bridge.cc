@@ -49,6 +49,7 @@ void BridgeExtensions::claim() const {
 
 void BridgeExtensions::open(Server& server, Simulation& simulation, const BridgeRun& run) const {
     for (const auto& group : groups_) group->open(server, simulation, run);
+    for (const auto& group : groups_) group->begin(simulation, run);
 }
 
 void BridgeExtensions::announce(JsonWriter& json) const {

@@ -56,6 +56,8 @@ class BridgeGroup {
     /// Opens the bridges that are asked for. \throws UsageError naming the option, FormatError,
     /// std::system_error
     virtual void open(Server& server, Simulation& simulation, const BridgeRun& run) = 0;
+    /// Makes files and folders, once the bridges of all groups are open. \throws std::system_error
+    virtual void begin(Simulation& /*simulation*/, const BridgeRun& /*run*/) {}
     /// Adds the addresses to the first line of output, which is an object.
     virtual void announce(JsonWriter& json) const = 0;
     /// Completes files after the run. \throws FormatError
@@ -79,6 +81,7 @@ class BridgeExtensions {
     void take(BridgeRules& rules) const;
     [[nodiscard]] std::size_t connections() const;
     void claim() const;
+    /// Opens all of them, then begins them.
     void open(Server& server, Simulation& simulation, const BridgeRun& run) const;
     void announce(JsonWriter& json) const;
     void commit(const CommonOptions& common) const;

@@ -125,6 +125,7 @@ class RosOptions final : public BridgeGroup {
     [[nodiscard]] std::size_t connections() const override;
     void claim() const override;
     void open(Server& server, Simulation& simulation, const BridgeRun& run) override;
+    void begin(Simulation& simulation, const BridgeRun& run) override;
     void announce(JsonWriter& json) const override;
     void commit(const CommonOptions& common) override;
 
@@ -141,7 +142,8 @@ class RosOptions final : public BridgeGroup {
     std::optional<int> domain_;
     std::string robot_;  // "": the only one
     bool has_rmf_ = false;
-    std::string mcap_;  // "" without
+    std::string mcap_;             // "" without
+    RosBridge* bridge_ = nullptr;  // null unless it is asked for
     std::optional<TopicLog> log_;
 };
 
@@ -209,7 +211,7 @@ void RosOptions::claim() const {
     claimOutput(TopicLog::metadataOf(mcap_), "the metadata of --mcap");
 }
 
-void RosOptions::open(Server& server, Simulation& simulation, const BridgeRun& run) {
+void RosOptions::open(Server& server, Simulation& /*simulation*/, const BridgeRun& run) {
     if (!ports_[0].endpoint && !ports_[1].endpoint && !domain_ && mcap_.empty()) return;
     RosScenery scenery{.map = mapOf,
                        .room = [](const Scene& scene) { return writeRoomGlb(scene); },
@@ -219,6 +221,7 @@ void RosOptions::open(Server& server, Simulation& simulation, const BridgeRun& r
     RosBridge& ros = *ofOption("--ros-robot", [&] {
         return &server.add(std::make_unique<RosBridge>(server.host(), std::move(scenery)));
     });
+    bridge_ = &ros;
     for (Port& port : ports_)
         if (port.endpoint)
             port.address = ros.open(port.language, *port.endpoint, "simrun " + run.title);
@@ -229,7 +232,11 @@ void RosOptions::open(Server& server, Simulation& simulation, const BridgeRun& r
                  "--ros2: nodes do not see " + std::to_string(left_out) +
                      " topics, as there are too many; Foxglove and rosbridge have all");
     }
-    if (!mcap_.empty()) log_.emplace(mcap_, ros, simulation, run.max_recorded);
+}
+
+void RosOptions::begin(Simulation& simulation, const BridgeRun& run) {
+    if (bridge_ != nullptr && !mcap_.empty())
+        log_.emplace(mcap_, *bridge_, simulation, run.max_recorded);
 }
 
 void RosOptions::announce(JsonWriter& json) const {
