@@ -122,6 +122,24 @@ TEST(Webots, DoorsAndWindowsOpenWalls) {
     EXPECT_NEAR(window->number("height"), 1.4, 1e-9);
 }
 
+TEST(Webots, DoorsAndWindowsKeepTheirNames) {
+    const Document document =
+        read("Window { translation 2 0 0 rotation 0 0 1 1.5708 size 0.2 4.2 2.4 name \"W 1\" }\n" +
+             kRoom.substr(kRoom.find('\n') + 1) +
+             "Wall { translation 2 0.75 0 size 0.2 1.3 2 }\n"
+             "Door { translation 2 1.9 0 size 0.2 1 2 name \"d\" }\n"
+             "Wall { translation 2 2.7 0 size 0.2 0.6 2 }\n");
+    const Record* door = find(document, "door");
+    ASSERT_NE(door, nullptr);
+    EXPECT_EQ(door->text("id"), "d");
+    EXPECT_EQ(door->text("wall"), "d-wall");
+    const Record* window = find(document, "window");
+    ASSERT_NE(window, nullptr);
+    EXPECT_EQ(window->text("id"), "w-1");
+    EXPECT_EQ(window->text("wall"), "w-1-wall");
+    environmentOf(document);  // has those walls
+}
+
 TEST(Webots, ArenasHaveFourWalls) {
     const Document document = read("RectangleArena { floorSize 4 3 }\n");
     EXPECT_EQ(countOf(document, "wall"), 4U);

@@ -117,7 +117,7 @@ class WorldImporter {
 
     /// Adds a block that is no wall, so that it has no opening either.
     void addThing(const WorldBlock& block) {
-        if (block.opening) ++world_.left_out[block.opening->is_window ? "window" : "door"];
+        if (block.opening) ++world_.left_out[keywordOf(*block.opening)];
         blocks_.push_back(block);
     }
 
@@ -386,20 +386,30 @@ class WorldImporter {
     /// Adds a box as a wall, the cut of a mesh as fences.
     void addWall(const WorldWall& wall) {
         for (const PlanPath& path : wall.paths) {
-            const std::string id = out_.freeId(wall.model, "wall");
-            if (path.closed || path.points.size() > 2)
-                out_.fence(path, id);
-            else
+            const bool is_line = !path.closed && path.points.size() == 2;
+            const auto opening = is_line ? openingOn(wall, path.piece(0)) : std::nullopt;
+            // The name is that of the opening.
+            const std::string opening_id =
+                opening ? out_.freeId(wall.model, keywordOf(wall.opening->first)) : "";
+            const std::string id = out_.freeId(opening ? opening_id + "-wall" : wall.model, "wall");
+            if (is_line)
                 out_.wall(path.piece(0), id, wall.line);
+            else
+                out_.fence(path, id);
             out_.last().set("height", wholeMicrometres(wall.top));
             out_.last().set("thickness", wholeMicrometres(wall.thickness));
-            if (wall.opening && !path.closed && path.points.size() == 2)
-                addOpening(id, wall, path.piece(0));
+            if (opening) addOpening(opening_id, wall, id, *opening);
         }
     }
 
-    /// Adds a door or window to the record of a wall's line; joinEnds() may have moved its ends.
-    void addOpening(const std::string& id, const WorldWall& wall, const Segment2& line) {
+    static const char* keywordOf(const WorldOpening& opening) {
+        return opening.is_window ? "window" : "door";
+    }
+
+    /// Returns the line of the opening on that of its wall, of which joinEnds() may have moved the
+    /// ends; std::nullopt without an opening, and for one that is left out, which is counted.
+    std::optional<Segment2> openingOn(const WorldWall& wall, const Segment2& line) {
+        if (!wall.opening) return std::nullopt;
         const auto& [opening, whole] = *wall.opening;
         const double length = distance(line.a, line.b);
         const Vec2 along = 1 / length * (line.b - line.a);
@@ -407,15 +417,20 @@ class WorldImporter {
             return wholeMicrometres(line.a +
                                     std::clamp(dot(p - line.a, along), 0.0, length) * along);
         };
-        const Point2 from = on_line(whole.a), to = on_line(whole.b);
-        if (from == to) {
-            ++world_.left_out[opening.is_window ? "window" : "door"];
-            return;
-        }
-        Record& record = out_.add(opening.is_window ? "window" : "door", wall.line);
-        record.set("wall", id);
-        ImportRecords::setPoint(record, "from", from);
-        ImportRecords::setPoint(record, "to", to);
+        const Segment2 place{on_line(whole.a), on_line(whole.b)};
+        if (place.a != place.b) return place;
+        ++world_.left_out[keywordOf(opening)];
+        return std::nullopt;
+    }
+
+    void addOpening(const std::string& id, const WorldWall& wall, const std::string& wall_id,
+                    const Segment2& place) {
+        const WorldOpening& opening = wall.opening->first;
+        Record& record = out_.add(keywordOf(opening), wall.line);
+        record.set("id", id);
+        record.set("wall", wall_id);
+        ImportRecords::setPoint(record, "from", place.a);
+        ImportRecords::setPoint(record, "to", place.b);
         const double sill = opening.is_window ? opening.sill : 0;
         record.set("height", wholeMicrometres(std::min(opening.height, wall.top - sill)));
         if (opening.is_window)
