@@ -70,10 +70,17 @@ struct WebotsContext {
     int depth = 0;
 };
 
+/// Sizes of a Wall, Door or Window, across the wall, along it and upwards, in metres.
+struct WallSizes {
+    std::array<double, 3> size{0.2, 1, 2.4}, frame{0.05, 0.05, 0.05};
+    double sill = 0, opening_height = 2;
+};
+
 class WebotsReader {
   public:
-    WebotsReader(std::string_view bytes, const std::string& name, Budget& work)
-        : name_(name), work_(work), file_(bytes, name, work) {}
+    /// \param out for warnings
+    WebotsReader(std::string_view bytes, const std::string& name, Budget& work, ImportRecords& out)
+        : name_(name), work_(work), out_(out), file_(bytes, name, work) {}
 
     WorldShapes read() {
         checkVersion();
@@ -374,31 +381,70 @@ class WebotsReader {
             const auto size = lengthsOf<3>(node, "size", {2, 2, 2});
             addBox(node, *context, Vector3d::Zero(), Vector3d(size[0], size[1], size[2]));
         } else {
-            const auto size = lengthsOf<3>(node, "size", {0.2, type == "Window" ? 0.8 : 1.0, 2.4});
-            addBox(node, *context, Vector3d(0, 0, size[2] / 2), Vector3d(size[0], size[1], size[2]),
-                   true, openingOf(node, context->frame.scale, size[1]));
+            const WallSizes sizes = type == "Window" ? windowSizesOf(node) : wallSizesOf(node);
+            const auto& [x, y, z] = sizes.size;
+            addBox(node, *context, Vector3d(0, 0, z / 2), Vector3d(x, y, z), true,
+                   openingOf(node, context->frame.scale, sizes));
         }
         return true;
     }
 
+    /// Reads those of a Wall or Door.
+    [[nodiscard]] WallSizes wallSizesOf(const VrmlNode& node) const {
+        WallSizes sizes;
+        sizes.size = lengthsOf<3>(node, "size", sizes.size);
+        if (node.type == "Wall") return sizes;
+        sizes.frame = lengthsOf<3>(node, "frameSize", sizes.frame);
+        sizes.opening_height = lengthOf(node, "frameHeight", sizes.opening_height);
+        return sizes;
+    }
+
+    /// Reads those of a Window. Webots replaces all by its own where they contradict each other.
+    [[nodiscard]] WallSizes windowSizesOf(const VrmlNode& node) {
+        constexpr WallSizes kStandard{{0.2, 0.8, 2.4}, {0.05, 0.02, 0.05}, 0.7, 1.4};
+        WallSizes sizes = kStandard;
+        sizes.size = lengthsOf<3>(node, "size", sizes.size);
+        sizes.frame = lengthsOf<3>(node, "frameSize", sizes.frame);
+        sizes.sill = numbersOf<1>(node, "bottomWallHeight", {sizes.sill}).front();
+        sizes.opening_height = lengthOf(node, "windowHeight", sizes.opening_height);
+        if (sizes.sill < 0) fail(node, "bottomWallHeight is below 0");
+        std::string fault;
+        if (sizes.opening_height <= 2 * sizes.frame[2])
+            fault =
+                "frameSize leaves no glass of windowHeight " + formatDouble(sizes.opening_height);
+        else if (sizes.opening_height + sizes.sill > sizes.size[2])
+            fault = "bottomWallHeight " + formatDouble(sizes.sill) + " and windowHeight " +
+                    formatDouble(sizes.opening_height) + " are more than the height in size, " +
+                    formatDouble(sizes.size[2]);
+        else if (sizes.size[0] <= 2 * sizes.frame[0])
+            fault = "frameSize leaves no glass of the thickness in size, " +
+                    formatDouble(sizes.size[0]);
+        if (fault.empty()) return sizes;
+        if (warned_.insert(&node).second)
+            out_.warn(
+                "Window: " + fault + ": taken with the sizes that Webots gives it, 0.2 0.8 2.4",
+                node.line);
+        return kStandard;
+    }
+
+    /// Returns false for a Door without a joint, which `position` does not move.
+    [[nodiscard]] static bool canBeOpen(const VrmlNode& door) {
+        const VrmlValue* value = door.field("canBeOpen");
+        return value == nullptr || value->word != "FALSE";
+    }
+
     /// Returns the opening in a Door or Window, between the posts of its frame.
     [[nodiscard]] std::optional<WorldOpening> openingOf(const VrmlNode& node, const Vector3d& scale,
-                                                        double width) const {
+                                                        const WallSizes& sizes) const {
         if (node.type == "Wall") return std::nullopt;
-        const bool is_window = node.type == "Window";
-        const auto frame = lengthsOf<3>(node, "frameSize", {0.05, is_window ? 0.02 : 0.05, 0.05});
         WorldOpening opening;
-        opening.width = scale.y() * (width - 2 * frame[1]);
+        opening.width = scale.y() * (sizes.size[1] - 2 * sizes.frame[1]);
         if (!(opening.width > 0)) fail(node, "its frame is as wide as the opening");
-        opening.is_window = is_window;
-        if (is_window) {
-            opening.sill = scale.z() * numbersOf<1>(node, "bottomWallHeight", {0.7}).front();
-            opening.height = scale.z() * lengthOf(node, "windowHeight", 1.4);
-            if (opening.sill < 0) fail(node, "bottomWallHeight is below 0");
-        } else {
-            opening.height = scale.z() * lengthOf(node, "frameHeight", 2);
-            opening.is_open = std::abs(numbersOf<1>(node, "position", {0}).front()) > kShutDoor;
-        }
+        opening.is_window = node.type == "Window";
+        opening.sill = scale.z() * sizes.sill;
+        opening.height = scale.z() * sizes.opening_height;
+        const double position = numbersOf<1>(node, "position", {0}).front();
+        opening.is_open = canBeOpen(node) && std::abs(position) > kShutDoor;
         return opening;
     }
 
@@ -418,8 +464,10 @@ class WebotsReader {
 
     const std::string& name_;
     Budget& work_;
+    ImportRecords& out_;
     VrmlFile file_;
     WorldShapes found_;
+    std::set<const VrmlNode*> warned_;  // those that USE repeats
 };
 
 }  // namespace
@@ -431,7 +479,8 @@ Document readWebots(std::string_view bytes, const std::string& name, const Impor
     ImportRecords out(schemas, name, options);
     Budget work(bytes.size(), options.max_work);
     withFileName(name, [&] {
-        writeWorldRoom(WebotsReader(bytes, name, work).read(), name, options, schemas, work, out);
+        writeWorldRoom(WebotsReader(bytes, name, work, out).read(), name, options, schemas, work,
+                       out);
     });
     return out.take();
 }

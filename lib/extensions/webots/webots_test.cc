@@ -140,6 +140,45 @@ TEST(Webots, DoorsAndWindowsKeepTheirNames) {
     environmentOf(document);  // has those walls
 }
 
+TEST(Webots, DoorsWithoutAJointStayShut) {
+    const auto is_open = [](const std::string& fields) {
+        const Document document =
+            read("Door { translation 2 0 0 rotation 0 0 1 1.5708 size 0.2 4.2 2 " + fields +
+                 " }\n" + kRoom.substr(kRoom.find('\n') + 1));
+        return find(document, "door")->flag("open");
+    };
+    EXPECT_FALSE(is_open("canBeOpen FALSE position 1.2"));
+    EXPECT_TRUE(is_open("canBeOpen TRUE position 1.2"));
+    EXPECT_TRUE(is_open("position -1.2"));
+    EXPECT_FALSE(is_open("canBeOpen TRUE"));
+}
+
+TEST(Webots, WindowsWhoseSizesContradictHaveThoseOfWebots) {
+    for (const auto& [fields, fault] : {
+             std::pair("size 0.2 4 2.4 bottomWallHeight 3",
+                       "bottomWallHeight 3 and windowHeight 1.4 are more than the height in size, "
+                       "2.4"),
+             std::pair("size 0.2 4 2.4 windowHeight 0.1",
+                       "frameSize leaves no glass of windowHeight 0.1"),
+             std::pair("size 0.1 4 2.4", "frameSize leaves no glass of the thickness in size, 0.1"),
+         }) {
+        // The walls beside it leave 0.8 m.
+        const Document document = read(
+            "Wall { translation 0.75 0 0 rotation 0 0 1 1.5708 size 0.2 1.7 2 }\n"
+            "Wall { translation 3.25 0 0 rotation 0 0 1 1.5708 size 0.2 1.7 2 }\n"
+            "DEF W Window { translation 2 0 0 rotation 0 0 1 1.5708 " +
+            std::string(fields) + " }\nUSE W\n" + kRoom.substr(kRoom.find('\n') + 1));
+        EXPECT_EQ(warningsOf(document),
+                  "w.wbt:4: warning: Window: " + std::string(fault) +
+                      ": taken with the sizes that Webots gives it, 0.2 0.8 2.4\n")
+            << fields;
+        const Record* window = find(document, "window");
+        ASSERT_NE(window, nullptr) << fields;
+        EXPECT_NEAR(std::abs(window->tuple("to")[0] - window->tuple("from")[0]), 0.76, 1e-6);
+        EXPECT_NEAR(window->number("sill"), 0.7, 1e-9);
+    }
+}
+
 TEST(Webots, ArenasHaveFourWalls) {
     const Document document = read("RectangleArena { floorSize 4 3 }\n");
     EXPECT_EQ(countOf(document, "wall"), 4U);
