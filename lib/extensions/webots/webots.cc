@@ -157,6 +157,13 @@ class WebotsReader {
         return lengthsOf<1>(node, field, {standard}).front();
     }
 
+    /// Returns the axis of a rotation at length 1; for 0 0 0 z, as Webots.
+    [[nodiscard]] static Vector3d axisOf(const Vector3d& axis) {
+        const double longest = axis.cwiseAbs().maxCoeff();
+        if (longest == 0) return Vector3d::UnitZ();
+        return (axis / longest).normalized();  // the squares of 1e300 are infinite
+    }
+
     /// Computes the frame of a node's children. A scale along axes that a later rotation mixes
     /// cannot be kept.
     [[nodiscard]] std::optional<WebotsFrame> innerFrame(const VrmlNode& node,
@@ -167,14 +174,12 @@ class WebotsReader {
         Transform local = Transform::Identity();
         local.translation() = Vector3d(outer.scale.x() * place[0], outer.scale.y() * place[1],
                                        outer.scale.z() * place[2]);
-        const Vector3d axis(turn[0], turn[1], turn[2]);
-        if (axis.norm() > 0) {
-            double angle = turn[3];
-            if (const double quarters = std::round(angle / kQuarterTurn);
-                std::abs(angle - quarters * kQuarterTurn) < kTurnDigits)
-                angle = quarters * kQuarterTurn;
-            local.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-        }
+        double angle = turn[3];
+        if (const double quarters = std::round(angle / kQuarterTurn);
+            std::abs(angle - quarters * kQuarterTurn) < kTurnDigits)
+            angle = quarters * kQuarterTurn;
+        local.linear() = Eigen::AngleAxisd(angle, axisOf(Vector3d(turn[0], turn[1], turn[2])))
+                             .toRotationMatrix();
         WebotsFrame inner{outer.pose * local, Vector3d(scale[0], scale[1], scale[2])};
         // The outer scale along the axes after the rotation.
         const Eigen::Matrix3d turned =

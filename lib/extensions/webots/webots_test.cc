@@ -179,6 +179,36 @@ TEST(Webots, WindowsWhoseSizesContradictHaveThoseOfWebots) {
     }
 }
 
+TEST(Webots, AxesOfAnyLengthTurn) {
+    const auto size_of = [](const std::string& rotation) {
+        const Document document = read(kRoom + "Pose { translation 2 1 0.5 rotation " + rotation +
+                                       " children [ " + box("0.6 0.4 1") + " ] }\n");
+        const Record* cube = find(document, "cube");
+        return cube == nullptr ? Tuple{} : cube->tuple("size");
+    };
+    // Half a turn about the diagonal swaps x and y.
+    for (const char* rotation : {"1 1 0 3.14159265", "1e300 1e300 0 3.14159265",
+                                 "1.7e308 1.7e308 0 3.14159265", "1e-320 1e-320 0 3.14159265"}) {
+        const Tuple size = size_of(rotation);
+        ASSERT_EQ(size.size(), 3U) << rotation;
+        EXPECT_NEAR(size[0], 0.6, 1e-6) << rotation;
+        EXPECT_NEAR(size[1], 0.4, 1e-6) << rotation;
+        EXPECT_NEAR(size[2], 1, 1e-6) << rotation;
+    }
+    // Leans, whatever the length of the axis.
+    EXPECT_TRUE(size_of("1 1 0 1").empty());
+    EXPECT_TRUE(size_of("1e300 1e300 0 1").empty());
+}
+
+TEST(Webots, TheAxisOfZerosIsUpright) {
+    const Document document =
+        read(kRoom + "Pose { translation 2 1 0.5 rotation 0 0 0 0.5 children [ " +
+             box("0.6 0.4 1") + " ] }\n");
+    const Record* cube = find(document, "cube");
+    ASSERT_NE(cube, nullptr);
+    EXPECT_NEAR(cube->number("heading"), 28.64789, 1e-4);
+}
+
 TEST(Webots, ArenasHaveFourWalls) {
     const Document document = read("RectangleArena { floorSize 4 3 }\n");
     EXPECT_EQ(countOf(document, "wall"), 4U);
