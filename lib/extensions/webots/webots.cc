@@ -97,6 +97,9 @@ class WebotsReader {
     /// \throws FormatError: before R2022a cylinders stood along y, and PROTOs had other sizes
     void checkVersion() const {
         const std::string_view version = file_.version();
+        if (version.empty())
+            failFile(name_, "the first line has no version, wanted one like #VRML_SIM R2023b utf8",
+                     1);
         const auto year =
             version.starts_with('R') ? parseDouble(version.substr(1, 4)) : std::nullopt;
         if (!year || *year < 2022)
@@ -294,7 +297,7 @@ class WebotsReader {
                                  {},
                                  floorOf(around.frame.pose.translation()),
                                  node.line,
-                                 "the solid " + printable(around.model),
+                                 around.model.empty() ? "" : "the solid " + printable(around.model),
                                  extent});
     }
 

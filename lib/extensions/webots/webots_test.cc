@@ -226,6 +226,14 @@ TEST(Webots, WhatIsNotReadIsCounted) {
         << notesOf(document);
     EXPECT_NE(warningsOf(document).find("IndexedFaceSet"), std::string::npos);
     EXPECT_NE(warningsOf(document).find("the solid sail"), std::string::npos);
+
+    const Document nameless =
+        read(kRoom + "Solid { children [ Shape { geometry Mesh { } } ] }\n" +
+             "Pose { rotation 1 0 0 0.5 children [ " + box("1 1 1") + " ] }\n");
+    EXPECT_NE(warningsOf(nameless).find("Mesh (1), at 0.00,0.00 of the file; box or cylinder that "
+                                        "leans (1), at 0.00,0.00 of the file: "),
+              std::string::npos)
+        << warningsOf(nameless);
 }
 
 TEST(Webots, FacesOfABoxAreABox) {
@@ -270,6 +278,9 @@ TEST(Webots, ErrorsNameTheirLine) {
               "w.wbt:3:1: error: the file ends, wanted the name of a field or }");
     EXPECT_EQ(error("PROTO Chair [\n]\n"), "w.wbt:2:1: error: a PROTO, wanted a world (.wbt)");
     EXPECT_EQ(error("WorldInfo {\n}\n"), "w.wbt: error: no box, cylinder, polyline or mesh in it");
+    EXPECT_EQ(errorOf("#VRML_SIM\nSolid { }\n"),
+              "w.wbt:1:1: error: the first line has no version, wanted one like #VRML_SIM R2023b "
+              "utf8");
     EXPECT_NE(errorOf("#VRML_SIM R2019b utf8\nSolid { }\n")
                   .find("w.wbt:1:1: error: a world of Webots `R2019b`, which had other axes"),
               std::string::npos);

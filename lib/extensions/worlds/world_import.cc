@@ -98,7 +98,7 @@ class WorldImporter {
                                  {},
                                  floorOf(shape.world_from_shape.translation()),
                                  shape.line,
-                                 "the model " + printable(shape.model),
+                                 shape.model.empty() ? "" : "the model " + printable(shape.model),
                                  extent});
     }
 
