@@ -9,10 +9,9 @@
 
 #include "base/file.h"
 #include "base/number.h"
+#include "bench_scenes.h"
 #include "bench_table.h"
 #include "geom/arrangement.h"
-#include "io/importers.h"
-#include "scene/placement_schemas.h"
 #include "scene/scene.h"
 #include "tool_run.h"
 
