@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "extensions/doorcounters/doorcounters_test.h"
 #include "record/text.h"
 #include "scene/findings/findings.h"
 #include "scene/placement_schemas.h"
@@ -32,11 +33,7 @@ const std::string kRooms =
 const std::string kCounter = "doorcounter id=c door=d\n";
 
 Scene sceneOf(const std::string& records, const std::string& room = kRooms) {
-    static const bool added = [] {
-        addDoorCounters();
-        return true;
-    }();
-    EXPECT_TRUE(added);
+    testing::addDoorCountersOnce();
     return makeScene(readRecordText(room + records, "room.env", sceneSchemas()), nullptr,
                      DeviceCatalogue());
 }

@@ -8,7 +8,9 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "scene/sensor/sensor.h"
 #include "scene/thing_kind.h"
+#include "sense/formats/reading_fields.h"
 #include "server/role_answer.h"
 
 namespace ispace {
@@ -201,6 +203,19 @@ constexpr Measure kMeasures[] = {{"power", "power", "W", "measurement"},
                                  {"in", "", "", "total_increasing"},
                                  {"out", "", "", "total_increasing"}};
 
+/// Returns the state class of a sensor's field by the marks of its kind, which an extension added;
+/// "" without one.
+std::string_view stateClassOf(std::string_view keyword, std::string_view key) {
+    const SensorKind* const kind = sensorKind(keyword);
+    if (kind == nullptr || kind->reading == nullptr) return "";
+    for (const ReadingField& field : kind->reading->fields) {
+        if (field.name != key || (field.uses & kIsState) == 0) continue;
+        if ((field.uses & kIsTotal) != 0) return "total_increasing";
+        if ((field.uses & kIsLevel) != 0) return "measurement";
+    }
+    return "";
+}
+
 /// Returns the entity that a kind names for a state, or null.
 const StateEntity* entityOf(std::string_view keyword, std::string_view key) {
     const ThingKind* const kind = thingKind(keyword);
@@ -263,7 +278,8 @@ MqttMessage describeBlind(Entity entity, const MqttKey& key, const std::string& 
 }
 
 /// Describes a key that the entity of its thing does not hold.
-MqttMessage describeKey(Entity entity, const MqttKey& key, const std::string& prefix) {
+MqttMessage describeKey(Entity entity, std::string_view keyword, const MqttKey& key,
+                        const std::string& prefix) {
     if (key.name == "blind" && key.spec != nullptr)
         return describeBlind(std::move(entity), key, prefix);
     entity.addTopics("", key);
@@ -275,6 +291,8 @@ MqttMessage describeKey(Entity entity, const MqttKey& key, const std::string& pr
             if (!measure.unit.empty()) entity.json().key("unit_of_measurement").value(measure.unit);
             entity.json().key("state_class").value(measure.state_class);
         }
+        if (const auto known = stateClassOf(keyword, key.name); !known.empty())
+            entity.json().key("state_class").value(known);
         // On a mat are movers, by their ids.
         if (!isFlag(key.name) || key.name == "on") return entity.message("sensor", prefix);
         if (key.name == "broken") entity.json().key("device_class").value("occupancy");
@@ -321,6 +339,7 @@ std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& 
             entity.json().key("unit_of_measurement").value(component.unit);
             state_class = "measurement";
         }
+        if (state_class.empty()) state_class = stateClassOf(thing.keyword, thing.keys[0].name);
         if (!state_class.empty()) entity.json().key("state_class").value(state_class);
         if (!component.form.empty()) entity.json().key("value_template").value(component.form);
         if (component.component == "camera")
@@ -351,8 +370,9 @@ std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& 
         const MqttKey& key = thing.keys[held];
         Entity entity(thing.id + ' ' + key.name, plain + "___" + key.name);
         const StateEntity* const named = entityOf(thing.keyword, key.name);
-        messages.push_back(named == nullptr ? describeKey(std::move(entity), key, prefix)
-                                            : describeAs(*named, std::move(entity), key, prefix));
+        messages.push_back(named == nullptr
+                               ? describeKey(std::move(entity), thing.keyword, key, prefix)
+                               : describeAs(*named, std::move(entity), key, prefix));
     }
     return messages;
 }

@@ -86,15 +86,17 @@ struct FieldRecord {
 
 /// Formats that write a field, as bits.
 enum FieldUse : unsigned {
-    kInJson = 1,    ///< a line of JSON, of `scan` and of records; angles in radians
-    kInColumn = 2,  ///< CSV: a value a row, or floats, one for each element
-    kInArray = 4,   ///< NumPy: a row a reading
-    kInFixed = 8,   ///< NumPy: an array of the sensor
-    kIsFrame = 16,  ///< JSON writes a file name instead if the frame has a file
-    kInInfo = 32,   ///< the protocol's description of the sensor; angles in degrees
-    kInLine = 64,   ///< the protocol's line of a reading: floats last, or as bytes after it
-    kInPage = 128,  ///< frames of the page, lengths in millimetres
-    kIsState = 256  ///< an event reports its changes
+    kInJson = 1,     ///< a line of JSON, of `scan` and of records; angles in radians
+    kInColumn = 2,   ///< CSV: a value a row, or floats, one for each element
+    kInArray = 4,    ///< NumPy: a row a reading
+    kInFixed = 8,    ///< NumPy: an array of the sensor
+    kIsFrame = 16,   ///< JSON writes a file name instead if the frame has a file
+    kInInfo = 32,    ///< the protocol's description of the sensor; angles in degrees
+    kInLine = 64,    ///< the protocol's line of a reading: floats last, or as bytes after it
+    kInPage = 128,   ///< frames of the page, lengths in millimetres
+    kIsState = 256,  ///< an event reports its changes
+    kIsTotal = 512,  ///< a state that only grows: home automation sums it up
+    kIsLevel = 1024  ///< a state that is a number, of which home automation keeps the course
 };
 
 struct ReadingField {
