@@ -32,6 +32,15 @@ Point2 nearestOf(const Polygon& polygon, Point2 p) {
     return best;
 }
 
+/// Names the keys that say where a sensor is, those of its kind, too: "`at` or `on`".
+std::string waysToPlace(const SensorKind& kind, const Schema& schema) {
+    std::string others;
+    if (kind.place != nullptr)
+        for (const KeySpec& key : schema.keys)
+            if (key.role == Role::Reference) others.append(" or `").append(key.name).append("`");
+    return (others.empty() ? "`at` or `on`" : "`at`, `on`") + others;
+}
+
 }  // namespace
 
 void checkUnplaced(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
@@ -40,10 +49,10 @@ void checkUnplaced(CheckContext& context, std::size_t record, std::vector<Findin
     const SensorKind* const kind = sensorKind(sensor.keyword());
     if (kind == nullptr || !kind->is_read || sensor.has("at") || sensor.has("on")) return;
     if (context.placed_of[record] != nullptr) return;  // by its kind
+    std::string hint = "give it " + waysToPlace(*kind, sensor.schema());
+    if (kind->is_arranged) hint += ", or let arrange place it";
     findings.push_back(context.finding(record, Severity::Warning, {},
-                                       " has no position and takes no readings",
-                                       std::string("give it `at` or `on`") +
-                                           (kind->is_arranged ? ", or let arrange place it" : "")));
+                                       " has no position and takes no readings", hint));
 }
 
 void checkOutside(CheckContext& context, std::size_t record, std::vector<Finding>& findings) {
