@@ -13,6 +13,9 @@
 #include "env/environment.h"
 #include "env/openings.h"
 #include "env/walls.h"
+#include "geom/point.h"
+#include "scene/findings/findings.h"
+#include "scene/scene.h"
 #include "scene/sensor/kind_functions.h"
 #include "sense/formats/field_values.h"
 #include "sense/moment.h"
@@ -171,6 +174,71 @@ void lookUpDoor(SensorModel& /*model*/, const Record& record, const RoomRecords&
     static_cast<void>(placeAtDoor(record, room));
 }
 
+/// Where a counter sees people and robots that it counts: before its line, and behind it.
+struct CountedSides {
+    bool ahead = false, behind = false;
+};
+
+/// Looks along rays across the view. \param tallest of the people and robots
+CountedSides countedSides(const DoorCounter& counter, const Pose3& pose, double tallest) {
+    constexpr int kRays = 16;  // from the middle to an edge
+    constexpr double kLevel = 1e-9, kOnLine = 1e-6;
+    Pose3 down = pose;
+    down.tilt = down.tilt - Angle::degrees(90);
+    const Frame3 frame(down);
+    const Vec2 inwards = unitVector(pose.heading);
+    const double across = std::tan(0.5 * counter.fov_across.radians()) / kRays;
+    const double along = std::tan(0.5 * counter.fov_along.radians()) / kRays;
+    const double top = pose.position.z - tallest, bottom = pose.position.z - counter.height;
+    CountedSides sides;
+    for (int i = -kRays; i <= kRays; ++i) {
+        for (int k = -kRays; k <= kRays; ++k) {
+            const Vec3 ray = frame * Vec3{1, i * across, k * along};
+            const double fall = -ray.z / length(ray);
+            double from = counter.min_range, to = counter.max_range;
+            if (std::abs(fall) > kLevel) {
+                from = std::max(from, std::min(top / fall, bottom / fall));
+                to = std::min(to, std::max(top / fall, bottom / fall));
+            } else if (top > 0 || bottom < 0) {
+                continue;
+            }
+            if (from > to) continue;
+            const double ahead = dot(Vec2{ray.x, ray.y}, inwards);
+            sides.ahead = sides.ahead || ahead > kOnLine;
+            sides.behind = sides.behind || ahead < -kOnLine;
+        }
+    }
+    return sides;
+}
+
+/// Warns of a counter that can count no passage.
+std::optional<Finding> checkCounter(const Scene& scene, std::size_t record) {
+    const auto placed = std::ranges::find(scene.placed, record, &PlacedRecord::record);
+    if (placed == scene.placed.end()) return std::nullopt;
+    const DoorCounter& counter = scene.sensors[placed->index].as<DoorCounter>();
+    double tallest = 1.7;  // of a person without `height`
+    for (const PlacedPerson& person : scene.people) tallest = std::max(tallest, person.height);
+    for (const PlacedRobot& robot : scene.robots) tallest = std::max(tallest, robot.model.height);
+    CountedSides sides;
+    if (counter.height <= tallest) sides = countedSides(counter, placed->pose, tallest);
+    if (sides.ahead && sides.behind) return std::nullopt;
+    std::string message = "doorcounter " + scene.ids[record] + " counts no passage: ";
+    if (sides.ahead || sides.behind)
+        message += "it sees one side of its line only";
+    else
+        message.append("no point of its view is at `height` (")
+            .append(formatDouble(counter.height))
+            .append(" m) or above on a person or robot of up to ")
+            .append(formatDouble(tallest))
+            .append(" m");
+    return Finding{.severity = Severity::Warning,
+                   .element = scene.ids[record],
+                   .at = placed->pose.position.onFloor(),
+                   .message = std::move(message),
+                   .hint = "hang it above heads, looking down, or change `height` or `range`",
+                   .source = scene.records[record].place()};
+}
+
 /// Builds a flat box with its lens below.
 std::vector<Mesh> counterBody() {
     Mesh box{Material::Sensor, {}, {}};
@@ -266,6 +334,9 @@ const SensorKind DoorCounter::kKind = {
         },
     .reading = &kReading};
 
-void addDoorCounters() { addSensorKind(DoorCounter::kKind); }
+void addDoorCounters() {
+    addSensorKind(DoorCounter::kKind);
+    addRecordCheck("doorcounter", checkCounter);
+}
 
 }  // namespace ispace

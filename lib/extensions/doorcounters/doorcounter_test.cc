@@ -204,6 +204,28 @@ TEST(DoorCounter, CountsBetweenTheRowsOfASparseRecord) {
     EXPECT_EQ(countIn(again).left, 1);
 }
 
+/// Returns the finding about the only counter; "" for none.
+std::string findingOf(const std::string& records) {
+    const std::vector<Finding> findings = checkScene(sceneOf(records));
+    return findings.empty() ? "" : findings.front().text();
+}
+
+TEST(DoorCounter, CheckTellsOfOnesThatCanCountNoPassage) {
+    EXPECT_EQ(findingOf(kCounter), "");
+    EXPECT_EQ(findingOf("doorcounter id=c at=1,0,2.3 range=3 tilt=20\n"), "");
+    for (const char* wrong :
+         {"doorcounter id=c at=3,1,0.15\n", "doorcounter id=c at=1,0,2.2 range=0.02,0.3\n",
+          "doorcounter id=c at=1,0,2.2 height=3\n"})
+        EXPECT_NE(findingOf(wrong).find("no point of its view is at `height`"), std::string::npos)
+            << wrong;
+    EXPECT_NE(findingOf("doorcounter id=c door=d tilt=90\n").find("one side of its line"),
+              std::string::npos);
+    EXPECT_NE(findingOf("doorcounter id=c\n").find("give it `at`, `on` or `door`"),
+              std::string::npos);
+    EXPECT_EQ(findingOf("doorcounter id=c at=1,0,2.2 range=0.02,0.3\nhuman id=a at=3,1 height=2\n"),
+              "");
+}
+
 TEST(DoorCounter, FieldsHaveItsCounts) {
     const Scene scene = sceneOf(kCounter + "human id=a at=0.3,0\n");
     const DoorCount count{3, 2, {{kFirstPerson, 1, 1}}};
