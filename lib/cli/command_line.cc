@@ -227,7 +227,7 @@ std::string CommandLine::Data::wordOf(std::size_t group) const {
 }
 
 /// Takes the word behind --help, or joined to it by =, out of a command line; the last word may be
-/// an option, as --seed. A name of a file is an operand.
+/// an option with a value, as --seed. A name of a file is an operand.
 void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         constexpr std::string_view kJoined = "--help=";
@@ -237,10 +237,11 @@ void CommandLine::Data::takeHelpWord(std::vector<std::string>& words) {
         }
         if (words[i] != "--help" && words[i] != "-h") continue;
         if (!about.empty() || i + 1 == words.size()) return;
-        std::string next = words[i + 1];
+        const std::string next = words[i + 1];
         const CLI::Option* const option = app.get_option_no_throw(next);
-        const bool asks_for_option =
-            option != nullptr && i + 2 == words.size() && next.starts_with("--");
+        // Its value is missing, so that it is a question.
+        const bool asks_for_option = option != nullptr && i + 2 == words.size() &&
+                                     option->get_items_expected_min() > 0 && next.starts_with("--");
         if (next.empty() || (next.starts_with('-') && !asks_for_option)) return;
         if (next.find_first_of("./") != std::string::npos) return;
         about = next;
