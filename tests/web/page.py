@@ -35,6 +35,8 @@ class Page:
         return self.text("log")
 
     def click(self, name):
+        """Once it is on the screen: the page learns later than the world what has changed."""
+        eventually(f"{name} on the screen", lambda: self.part(name).is_displayed())
         self.part(name).click()
 
     def select(self, mover):
