@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "cli/common_options.h"
+#include "cli/objective_extension.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "support/test_folder.h"
@@ -301,6 +302,60 @@ TEST(CommandLine, TakesTheWordBehindHelp) {
     EXPECT_EQ(asked({"--help", "--style"}), asked({"--help", "style"}));
     EXPECT_EQ(asked({"--style", "fine", "--help"}), page);
     EXPECT_THROW(asked({"--help", "mops"}), UsageError);
+}
+
+TEST(CommandLine, FindsAnOptionBeforeAGroupThatMerelyHasItsWord) {
+    const auto asked = [](std::vector<const char*> words) {
+        CommandLine line("tool", "", "does something.");
+        std::string run, films;
+        line.group("Films of a run");
+        line.text("--fps", "N", films, "pictures a second", Enters::Nothing);
+        line.group("Trackers of a run");
+        line.text("--run", "DIR", run, "the record", Enters::Nothing);
+        line.text("--films", "N", films, "how many", Enters::Nothing);
+        words.insert(words.begin(), "tool");
+        try {
+            line.parse(static_cast<int>(words.size()), words.data());
+        } catch (const TextRequested& text) {
+            return text.text;
+        }
+        return std::string();
+    };
+    EXPECT_NE(asked({"--help", "run"}).find("the record"), std::string::npos);
+    // The word of a group alone stands for the group; the option has its dashes.
+    EXPECT_NE(asked({"--help", "films"}).find("pictures a second"), std::string::npos);
+    EXPECT_NE(asked({"--help", "--films"}).find("how many"), std::string::npos);
+    EXPECT_EQ(asked({"--help", "--films"}).find("pictures a second"), std::string::npos);
+}
+
+TEST(CommandLine, NamesTheExtensionOfAnObjectiveThatTheBuildLacks) {
+    constexpr ObjectiveRow kRows[] = {{"evenness", nullptr, "even"}};
+    const ObjectiveExtensions objectives(kRows);
+    EXPECT_EQ(objectives.find("coverage"), nullptr);
+    try {
+        static_cast<void>(objectives.find("even"));
+        FAIL();
+    } catch (const UsageError& error) {
+        EXPECT_STREQ(error.what(),
+                     "`even`: it belongs to the extension evenness, which this build lacks");
+    }
+}
+
+TEST(CommandLine, ListsTheExtensionsOfTheBuildWithItsVersion) {
+    const auto version = [](std::vector<std::string_view> extensions, const char* form) {
+        CommandLine line("tool", "", "does something.");
+        line.built(extensions);
+        const char* const words[] = {"tool", "--version", form};
+        try {
+            line.parse(form == nullptr ? 2 : 3, words);
+        } catch (const TextRequested& text) {
+            return text.text;
+        }
+        return std::string();
+    };
+    EXPECT_TRUE(version({"cad", "locks"}, nullptr).ends_with("\nExtensions: cad locks\n"));
+    EXPECT_TRUE(version({}, nullptr).ends_with("\nExtensions: none\n"));
+    EXPECT_NE(version({"cad"}, "--json").find(R"("extensions":["cad"])"), std::string::npos);
 }
 
 TEST(CommandLine, TakesTimesWithUnits) {
