@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // race KIND: a data race on purpose, which ThreadSanitizer must report; `none` has no race. It
 // shows that an instrumented run without a report was watched: our threads, tasks and pipelines
-// within TBB, lib/sim.
+// within TBB, lib/engine/sim.
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # include_direction.sh [ROOT]: dependencies between the folders of lib/ point one way, heavy libraries stay out of
-# headers, headers that are private to a folder are included there alone, and only lib/cli prints, exits or reads the
+# headers, headers that are private to a folder are included there alone, and only lib/engine/cli prints, exits or reads the
 # environment. It first shows on a made-up tree that it can fail.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
@@ -32,18 +32,21 @@ violations() {
                 "environ([^A-Za-z0-9_]|$))"
     }
     FNR == 1 {
-        split(FILENAME, path, "/")
+        # Names in includes and in these rules are those below the ring, "geom/point.h".
+        place = FILENAME
+        sub(/^lib\/(kernel|engine)\//, "lib/", place)
+        split(place, path, "/")
         in_lib = path[1] == "lib"
         folder = path[2]
         in_test = FILENAME ~ /_test\.cc$/
         # Separate programs and modules, which no tool links. So are sources that include the classes of ARIA, which
         # print, exit and read the environment.
-        is_apart = FILENAME ~ /^lib\/((base|io\/mesh|raster)\/module|client\/sim_aria)\//
-        is_fuzz = FILENAME ~ /^lib\/extensions\/[a-z_]+\/fuzz\//
+        is_apart = place ~ /^lib\/((base|io\/mesh|raster)\/module|client\/sim_aria)\//
+        is_fuzz = place ~ /^lib\/extensions\/[a-z_]+\/fuzz\//
         if (in_lib && !(folder in known)) report("folder lib/" folder " has no place in the order")
     }
     FNR < 6 && match($0, /Private to lib\/[a-z_\/]+/) {
-        private_to[substr(FILENAME, 5)] = substr($0, RSTART + 11, RLENGTH - 11) "/"
+        private_to[substr(place, 5)] = substr($0, RSTART + 11, RLENGTH - 11) "/"
     }
     /^[ \t]*#[ \t]*include/ {
         target = $0
@@ -56,18 +59,18 @@ violations() {
             !(is_fuzz && target == "fuzz.h"))
             report("name the folder: " target)
         # Rooms inside of folders have separate fences.
-        if (!in_test && FILENAME ~ /^lib\/arrange\/search\// && index($0, "\"") && target !~ /^(base|arrange\/search)\//)
-            report("lib/arrange/search knows sets of cells alone: " target)
-        if (!in_test && FILENAME ~ /^lib\/arrange\/gallery\// && index($0, "\"") &&
+        if (!in_test && place ~ /^lib\/arrange\/search\// && index($0, "\"") && target !~ /^(base|arrange\/search)\//)
+            report("lib/engine/arrange/search knows sets of cells alone: " target)
+        if (!in_test && place ~ /^lib\/arrange\/gallery\// && index($0, "\"") &&
             target !~ /^(base|geom|arrange\/search|arrange\/gallery)\/|^arrange\/certificate_lines\.h$/)
-            report("lib/arrange/gallery knows floors alone: " target)
-        if (!in_test && FILENAME ~ /^lib\/arrange\/poses\// && index($0, "\"") &&
+            report("lib/engine/arrange/gallery knows floors alone: " target)
+        if (!in_test && place ~ /^lib\/arrange\/poses\// && index($0, "\"") &&
             target !~ /^(base|geom|arrange\/poses)\/|^arrange\/certificate_lines\.h$/)
-            report("lib/arrange/poses knows floors alone: " target)
-        if (FILENAME ~ /^lib\/trace\/[^\/]*$/ && target ~ /^trace\/render\//)
-            report("lib/trace must not include " target)
+            report("lib/engine/arrange/poses knows floors alone: " target)
+        if (place ~ /^lib\/trace\/[^\/]*$/ && target ~ /^trace\/render\//)
+            report("lib/kernel/trace must not include " target)
         # One private header hides the versions of Embree from the sources beside it.
-        if (FILENAME == "lib/trace/embree_query.h" && target ~ /^embree/) next
+        if (FILENAME == "lib/kernel/trace/embree_query.h" && target ~ /^embree/) next
         if (FILENAME ~ /\.h$/ && target ~ heavy) report("keep " target " out of headers")
         # Its headers are copied and installed without the library; tests have GoogleTest besides.
         if (folder == "client" && in_lib && !in_test && FILENAME !~ /^lib\/client\/aria\// &&
@@ -76,14 +79,14 @@ violations() {
             report("lib/client stands by itself: " target)
         if (target ~ /^(ispace_client|sim_aria)[\/.]/ && folder != "client")
             report("lib/client is for other programs: " target)
-        if (target ~ /^CLI\// && in_lib && folder != "cli") report("only lib/cli may include " target)
+        if (target ~ /^CLI\// && in_lib && folder != "cli") report("only lib/engine/cli may include " target)
         next
     }
     in_lib && folder != "cli" && !in_test && !is_apart {
         code = $0
         gsub(/"([^"\\]|\\.)*"/, "\"\"", code)
         sub(/\/\/.*/, "", code)
-        if (code ~ quiet) report("below lib/cli nothing prints, exits or reads the environment: " code)
+        if (code ~ quiet) report("below lib/engine/cli nothing prints, exits or reads the environment: " code)
     }
     END {
         for (at in included)
@@ -112,57 +115,57 @@ expect() {
         [ -z "$found" ] || fail "self-test: wrongly reported: $found"
     fi
 }
-expect lib/geom/a.h '#include "env/slice.h"' yes
-expect lib/io/a.cc '#include "trace/ray_world.h"' yes
-expect lib/coverage/a.cc '#include "io/glb/glb_file.h"' yes
-expect lib/report/a.cc '#include "drawing/plan/plan.h"' no
-expect lib/report/map/a.cc '#include "io/glb/glb_write.h"' no
-expect lib/coverage/a.cc '#include "report/map/map.h"' yes
-expect lib/scene/findings/a.cc '#include "sense/scan.h"' yes
-expect lib/raster/a_test.cc '#include "record/schema.h"' yes
-expect lib/base/a.cc '#include <geom/pose.h>' yes
-expect lib/arrange/a.cc '#include "server/server.h"' yes
-expect lib/arrange/search/a.cc '#include "geom/point.h"' yes
-expect lib/arrange/search/a.cc '#include "base/error.h"' no
-expect lib/arrange/gallery/a.cc '#include "scene/scene.h"' yes
-expect lib/arrange/gallery/a.cc '#include "arrange/search/set_cover.h"' no
-expect lib/arrange/poses/a.cc '#include "scene/scene.h"' yes
-expect lib/arrange/poses/a.cc '#include "geom/polygon.h"' no
-expect lib/arrange/poses/a.cc '#include "arrange/certificate_lines.h"' no
-expect lib/arrange/poses/a.cc '#include "arrange/refine.h"' yes
-expect lib/trace/a.cc '#include "trace/render/render.h"' yes
-expect lib/sim/a.cc '#include "server/server.h"' yes
-expect lib/site/a.cc '#include "passage/lift.h"' yes
-expect lib/sim/a.cc '#include "passage/lift.h"' yes
-expect lib/server/a.cc '#include "passage/lift.h"' yes
-expect lib/passage/a.cc '#include "sim/world.h"' no
+expect lib/kernel/geom/a.h '#include "env/slice.h"' yes
+expect lib/engine/io/a.cc '#include "trace/ray_world.h"' yes
+expect lib/kernel/coverage/a.cc '#include "io/glb/glb_file.h"' yes
+expect lib/engine/report/a.cc '#include "drawing/plan/plan.h"' no
+expect lib/engine/report/map/a.cc '#include "io/glb/glb_write.h"' no
+expect lib/kernel/coverage/a.cc '#include "report/map/map.h"' yes
+expect lib/kernel/scene/findings/a.cc '#include "sense/scan.h"' yes
+expect lib/kernel/raster/a_test.cc '#include "record/schema.h"' yes
+expect lib/kernel/base/a.cc '#include <geom/pose.h>' yes
+expect lib/engine/arrange/a.cc '#include "server/server.h"' yes
+expect lib/engine/arrange/search/a.cc '#include "geom/point.h"' yes
+expect lib/engine/arrange/search/a.cc '#include "base/error.h"' no
+expect lib/engine/arrange/gallery/a.cc '#include "scene/scene.h"' yes
+expect lib/engine/arrange/gallery/a.cc '#include "arrange/search/set_cover.h"' no
+expect lib/engine/arrange/poses/a.cc '#include "scene/scene.h"' yes
+expect lib/engine/arrange/poses/a.cc '#include "geom/polygon.h"' no
+expect lib/engine/arrange/poses/a.cc '#include "arrange/certificate_lines.h"' no
+expect lib/engine/arrange/poses/a.cc '#include "arrange/refine.h"' yes
+expect lib/kernel/trace/a.cc '#include "trace/render/render.h"' yes
+expect lib/engine/sim/a.cc '#include "server/server.h"' yes
+expect lib/engine/site/a.cc '#include "passage/lift.h"' yes
+expect lib/engine/sim/a.cc '#include "passage/lift.h"' yes
+expect lib/engine/server/a.cc '#include "passage/lift.h"' yes
+expect lib/engine/passage/a.cc '#include "sim/world.h"' no
 expect lib/extensions/reality/a.cc '#include "cli/extension.h"' no
-expect lib/cli/a.cc '#include "extensions/reality/a.h"' yes
-expect lib/sim/a.h $'//\n// Private to lib/sim: parts\n#include "sim/a.h"' no
-expect lib/passage/a.h $'//\n// Private to lib/sim: parts\n#include "passage/a.h"' yes
+expect lib/engine/cli/a.cc '#include "extensions/reality/a.h"' yes
+expect lib/engine/sim/a.h $'//\n// Private to lib/engine/sim: parts\n#include "sim/a.h"' no
+expect lib/engine/passage/a.h $'//\n// Private to lib/engine/sim: parts\n#include "passage/a.h"' yes
 expect lib/nowhere/a.cc '#include <vector>' yes
-expect lib/geom/a.cc '#include "pose.h"' yes
-expect lib/geom/a.h '#include <CGAL/Arrangement_2.h>' yes
-expect lib/trace/a.h '#include <embree3/rtcore.h>' yes
-expect lib/record/a.h '#include <yaml-cpp/yaml.h>' yes
-expect lib/env/a.cc '#include <CLI/CLI.hpp>' yes
+expect lib/kernel/geom/a.cc '#include "pose.h"' yes
+expect lib/kernel/geom/a.h '#include <CGAL/Arrangement_2.h>' yes
+expect lib/kernel/trace/a.h '#include <embree3/rtcore.h>' yes
+expect lib/kernel/record/a.h '#include <yaml-cpp/yaml.h>' yes
+expect lib/kernel/env/a.cc '#include <CLI/CLI.hpp>' yes
 expect lib/client/a.h '#include "base/error.h"' yes
 expect lib/client/ispace_client/a.h '#include <base/error.h>' yes
 expect lib/client/a.h '#include <boost/asio.hpp>' yes
 expect lib/client/a.h '#include <zlib.h>' yes
 expect lib/client/a.h '#include <ispace_client/error.h>' no
 expect lib/client/a.h '#include <sys/socket.h>' no
-expect lib/server/a.h '#include <ispace_client/error.h>' yes
-expect lib/env/a.cc 'std::cerr << 1;' yes
-expect lib/env/a.cc 'if (x) exit(1);' yes
-expect lib/env/a.cc 'auto* v = std::getenv("HOME");' yes
-expect lib/arrange/a.cc '#include "base/error.h"' no
-expect lib/env/a.cc '#include "raster/picture.h"' no
-expect lib/cli/a.cc '#include "arrange/arrange.h"' no
-expect lib/cli/a.cc 'std::cerr << 1;' no
-expect lib/geom/a.cc '#include <CGAL/Arrangement_2.h>' no
-expect lib/env/a.cc 'onExit(); snprintf(b, 1, ""); // exit(1)' no
-expect lib/env/a.cc 'f("exit(1)");' no
+expect lib/engine/server/a.h '#include <ispace_client/error.h>' yes
+expect lib/kernel/env/a.cc 'std::cerr << 1;' yes
+expect lib/kernel/env/a.cc 'if (x) exit(1);' yes
+expect lib/kernel/env/a.cc 'auto* v = std::getenv("HOME");' yes
+expect lib/engine/arrange/a.cc '#include "base/error.h"' no
+expect lib/kernel/env/a.cc '#include "raster/picture.h"' no
+expect lib/engine/cli/a.cc '#include "arrange/arrange.h"' no
+expect lib/engine/cli/a.cc 'std::cerr << 1;' no
+expect lib/kernel/geom/a.cc '#include <CGAL/Arrangement_2.h>' no
+expect lib/kernel/env/a.cc 'onExit(); snprintf(b, 1, ""); // exit(1)' no
+expect lib/kernel/env/a.cc 'f("exit(1)");' no
 expect tools/envc/main.cc '#include "cli/run.h"' no
 
 found=$(violations "$root")
@@ -171,4 +174,4 @@ found=$(violations "$root")
 for folder in $(cd "$root" && find lib -mindepth 1 -name '*.h' -printf '%h\n' | grep -vE '^lib/client|/module' | sort -u); do
     sed -sn 2,3p "$root/$folder"/*.h | grep -q "^// $folder: " || fail "no header of $folder begins with its job"
 done
-[ -n "$(ls "$root"/lib/base/*.cc)" ] || fail "no sources in $root"
+[ -n "$(ls "$root"/lib/kernel/base/*.cc)" ] || fail "no sources in $root"

@@ -15,8 +15,8 @@ root, most = pathlib.Path(sys.argv[1]), 8
 # Doors and windows are older than their motors and blinds, which are states. RFID readers added the key `tag`, light
 # meters the key `lumens`. SVG has an element <switch>, rays have contacts, and ROS has messages with names of readings.
 pattern_of = {"contact": '"contact"|\\bContactState\\b', "door": '{"door", "', "rfid": '"rfid"|\\btagKey\\b', "lux": '"lux"|"lumens"'}
-unrelated = {("switch", "lib/extensions/cad/svg.cc"), ("contact", "lib/trace/flat_packet.cc")}
-unrelated |= {(kind, f"lib/sense/formats/ros_{part}") for kind in ("lux", "thermometer", "imu")
+unrelated = {("switch", "lib/extensions/cad/svg.cc"), ("contact", "lib/kernel/trace/flat_packet.cc")}
+unrelated |= {(kind, f"lib/kernel/sense/formats/ros_{part}") for kind in ("lux", "thermometer", "imu")
               for part in ("types.h", "types.cc", "messages.h")}
 files = {}
 for folder in ("lib", "tools", "share/schemas", "share/sweep"):
@@ -68,20 +68,20 @@ END_OF_PROGRAM
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-mkdir -p "$scratch"/lib/scene "$scratch"/docs
+mkdir -p "$scratch"/lib/kernel/scene "$scratch"/docs
 # page OTHERS: writes a table with one row.
 page() {
     printf '%s\n' '| kind | its own files | others that name it |' '|---|---|---|' \
         "| \`pir\` | \`pir.h\` | $* |" >"$scratch/docs/internals.md"
 }
 page "\`kinds.h\`"
-printf 'struct Pir;\n' >"$scratch/lib/scene/pir.h"
-printf '#include "scene/pir.h"\n' >"$scratch/lib/scene/kinds.h"
+printf 'struct Pir;\n' >"$scratch/lib/kernel/scene/pir.h"
+printf '#include "scene/pir.h"\n' >"$scratch/lib/kernel/scene/kinds.h"
 [ -z "$(violations "$scratch")" ] || { echo "a violation in a good tree: $(violations "$scratch")"; exit 1; }
-printf 'keyword == "pir"\n' >"$scratch/lib/scene/other.cc"
+printf 'keyword == "pir"\n' >"$scratch/lib/kernel/scene/other.cc"
 [ -n "$(violations "$scratch")" ] || { echo "no violation found in a bad tree"; exit 1; }
-for i in 1 2 3 4 5 6 7 8; do printf 'Pir\n' >"$scratch/lib/scene/f$i.cc"; done
-rm "$scratch/lib/scene/other.cc"
+for i in 1 2 3 4 5 6 7 8; do printf 'Pir\n' >"$scratch/lib/kernel/scene/f$i.cc"; done
+rm "$scratch/lib/kernel/scene/other.cc"
 page "\`kinds.h\`" "\`f"{1..8}".cc\`"
 violations "$scratch" | grep -q 'more than 8' || { echo "nine files pass"; exit 1; }
 

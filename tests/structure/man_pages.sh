@@ -90,7 +90,7 @@ if command -v groff >/dev/null; then
     groff -man -ww -z -Tutf8 "$page" 2>groff.err
     [ ! -s groff.err ] || fail "ispace-protocol: $(cat groff.err)"
 fi
-verbs=$(sed -n 's/^ *{"\([A-Z]*\)", .*&C::.*/\1/p' "$source_dir"/lib/server/session*.cc | sort -u)
+verbs=$(sed -n 's/^ *{"\([A-Z]*\)", .*&C::.*/\1/p' "$source_dir"/lib/engine/server/session*.cc | sort -u)
 [ "$(wc -w <<<"$verbs")" -gt 20 ] || fail "no list of requests: $verbs"
 plain "$page" | grep -E -A 1 '^\.(SS|TP)|^(\.B.* )?(HELP|QUIT|TOKEN)\b|^\.B[RI]? (HELP|QUIT|TOKEN)' >heads
 for verb in $verbs; do

@@ -13,10 +13,10 @@ shared_names() {
 
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree/lib/base" "$tree/tests/client" "$tree/tests/support"
-echo 'const std::string file = ::testing::TempDir() + "a";' >"$tree/lib/base/a_test.cc"
+mkdir -p "$tree/lib/kernel/base" "$tree/tests/client" "$tree/tests/support"
+echo 'const std::string file = ::testing::TempDir() + "a";' >"$tree/lib/kernel/base/a_test.cc"
 [ -n "$(shared_names "$tree")" ] || { echo "test_folders: self-test: not noticed"; exit 1; }
-echo 'const testing::TestFolder folder;' >"$tree/lib/base/a_test.cc"
+echo 'const testing::TestFolder folder;' >"$tree/lib/kernel/base/a_test.cc"
 [ -z "$(shared_names "$tree")" ] || { echo "test_folders: self-test: wrongly reported"; exit 1; }
 
 found=$(shared_names "$root")

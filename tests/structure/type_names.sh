@@ -9,7 +9,7 @@ root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
 # Prints one line per name that two files of lib/ define. $1: a tree with lib/. Skips types in unnamed namespaces and in
 # other types; in a named namespace inside of ispace they count with its name. Modules are separate programs.
 doubled() {
-    (cd "$1" && find lib \( -name '*.h' -o -name '*.cc' \) ! -path 'lib/io/module/*' |
+    (cd "$1" && find lib \( -name '*.h' -o -name '*.cc' \) ! -path 'lib/engine/io/module/*' |
         LC_ALL=C sort | xargs awk '
     FNR == 1 { depth = 0; unnamed = 0; space = "" }
     /^namespace( [A-Za-z_0-9:]+)? *[{]/ {
@@ -56,9 +56,9 @@ trap 'rm -rf "$tree"' EXIT
 # expect FIRST SECOND WANTED: two files with this text name a type twice iff WANTED is yes.
 expect() {
     rm -rf "$tree/lib"
-    mkdir -p "$tree/lib/geom" "$tree/lib/env"
-    printf 'namespace ispace {\n%b\n}  // namespace ispace\n' "$1" >"$tree/lib/geom/a.h"
-    printf 'namespace ispace {\n%b\n}  // namespace ispace\n' "$2" >"$tree/lib/env/b.cc"
+    mkdir -p "$tree/lib/kernel/geom" "$tree/lib/kernel/env"
+    printf 'namespace ispace {\n%b\n}  // namespace ispace\n' "$1" >"$tree/lib/kernel/geom/a.h"
+    printf 'namespace ispace {\n%b\n}  // namespace ispace\n' "$2" >"$tree/lib/kernel/env/b.cc"
     local found
     found=$(doubled "$tree")
     if [ "$3" = yes ]; then
@@ -83,4 +83,4 @@ expect 'struct VisibilityMap {' 'struct VisibilityMap::Data {' no
 
 found=$(doubled "$root")
 [ -z "$found" ] || fail "$(printf 'names of types stand for two things\n%s' "$found")"
-[ -n "$(ls "$root"/lib/base/*.cc)" ] || fail "no sources in $root"
+[ -n "$(ls "$root"/lib/kernel/base/*.cc)" ] || fail "no sources in $root"

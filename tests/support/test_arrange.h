@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/arrange: environments, rooms and sensors from text.
+// For tests of lib/engine/arrange: environments, rooms and sensors from text.
 #pragma once
 
 #include <initializer_list>

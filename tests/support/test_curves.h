@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/geom and lib/raster: random curves, pixel maps and the exact reference.
+// For tests of lib/kernel/geom and lib/kernel/raster: random curves, pixel maps and the exact
+// reference.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/scene and the libraries above it: scenes from text.
+// For tests of lib/kernel/scene and the libraries above it: scenes from text.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/env and the libraries above it: builds meshes.
+// For tests of lib/kernel/env and the libraries above it: builds meshes.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/sense: readings of placed sensors, and invented ones for the formats.
+// For tests of lib/kernel/sense: readings of placed sensors, and invented ones for the formats.
 #pragma once
 
 #include <limits>

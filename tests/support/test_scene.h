@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/env: environments from text.
+// For tests of lib/kernel/env: environments from text.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/record: schemas, since the real keywords are defined in libraries above it.
+// For tests of lib/kernel/record: schemas, since the real keywords are defined in libraries above
+// it.
 #pragma once
 
 #include <string>

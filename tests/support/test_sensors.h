@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/scene and the libraries above it: records and devices of sensors from text.
+// For tests of lib/kernel/scene and the libraries above it: records and devices of sensors from
+// text.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/scene and the libraries above it: a source of scenes without files.
+// For tests of lib/kernel/scene and the libraries above it: a source of scenes without files.
 #pragma once
 
 #include <map>

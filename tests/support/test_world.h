@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests of lib/sim: a small world with a robot that carries a laser, a bare robot, and a
+// For tests of lib/engine/sim: a small world with a robot that carries a laser, a bare robot, and a
 // standing laser.
 #pragma once
 

@@ -40,7 +40,7 @@ struct SensorFit {
 std::vector<SensorFit> fitSensors(const LoggedRun& run);
 
 /// Errors of odometry against corrected poses: variances of turn and way, see strayed() in
-/// lib/sim/odometry.h.
+/// lib/engine/sim/odometry.h.
 struct OdometryFit {
     std::size_t motions = 0;
     std::array<double, 4> alphas{}, errors{};       ///< variance a radian or a metre

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The interface between a port for WebSockets and the languages spoken there. Private to
-// lib/server.
+// lib/engine/server.
 #pragma once
 
 #include <cstddef>

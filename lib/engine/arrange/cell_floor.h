@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/engine/arrange: ways over the free cells of a target.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "arrange/search/cell_ways.h"
+#include "base/cell_set.h"
+#include "coverage/target.h"
+#include "env/environment.h"
+#include "geom/point.h"
+
+namespace ispace {
+
+/// Unit of the lengths of ways, metres.
+constexpr double kWayUnit = 1e-4;
+
+/// Adds the floor of a room: ways of a point over the centres of free cells. Steps lead to the 16
+/// neighbours that are a king's or a knight's move away, if all cells under them are free and no
+/// wall crosses them. No way is longer than the shortest one over free floor by more than 2.8 %,
+/// besides two cells at each corner that it passes.
+/// \returns the first of its cells
+std::size_t addFloor(const Environment& environment, const Target& target, CellWays& ways);
+
+/// Returns the free cells of a zone, from `first` on, of `all` cells.
+/// \throws UsageError for an unknown zone, and for one without a free cell
+CellSet freeCellsOf(const Environment& environment, const Target& target, const std::string& zone,
+                    std::size_t first, std::size_t all);
+
+/// Returns the free cells of a landing: those with a centre on it or, with large cells, the one
+/// with the nearest centre to which no wall bars the way, within two cells. Empty without any.
+CellSet landingCellsOf(const Environment& environment, const Target& target, const Box2& landing,
+                       std::size_t first, std::size_t all);
+
+}  // namespace ispace

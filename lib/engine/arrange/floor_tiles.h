@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/engine/arrange: bounds of the floor in a box.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/cell_set.h"
+#include "geom/curve.h"
+#include "geom/point.h"
+#include "raster/grid.h"
+
+namespace ispace {
+
+/// Bounds the weight of floor in boxes by tiles, in O(1) a box.
+class FloorTiles {
+  public:
+    /// Of floor in this box, which is not empty.
+    explicit FloorTiles(const Box2& box);
+
+    /// Adds floor to the left of these curves. O((n + tiles) log tiles) \pre weight >= 0
+    void add(std::span<const Curve> curves, double weight);
+    /// Returns the weight in all tiles that the box meets, and thus at least that in the box, up to
+    /// rounding.
+    [[nodiscard]] double mostIn(const Box2& box) const;
+
+  private:
+    static constexpr std::size_t kSide = 64;  // tiles, a power of two
+
+    struct Part;
+    void divide(const std::vector<Polygon>& floor, const Part& part, double weight);
+    /// Returns the tile of a coordinate, within the first and last.
+    [[nodiscard]] static std::size_t tileAt(double offset, double extent);
+
+    Box2 box_;
+    /// [x + y * (kSide + 1)]: the sum over the tiles to the left of x and below y.
+    std::vector<double> sums_;
+};
+
+/// Bounds the area of these cells within a range of any point of the grid. O(cells of the grid)
+double mostWithin(double range, const CellSet& cells, const Grid& grid);
+
+}  // namespace ispace

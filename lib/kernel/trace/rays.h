@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sets of rays and their conventions, for all of lib/kernel/trace.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "geom/point.h"
+#include "geom/tolerance.h"
+
+namespace ispace {
+
+/// Range of a ray without return.
+constexpr float kNoReturn = std::numeric_limits<float>::infinity();
+
+/// A ray up to `reach` times its direction.
+struct Ray {
+    Point3 origin;
+    Vec3 direction;
+    double reach = 0;
+};
+
+/// Intersection of a ray with a surface, flat or round, standing or moving.
+struct RayHit {
+    double multiple = std::numeric_limits<double>::infinity();  ///< multiple of the ray's direction
+    /// |normal times direction|: the cosine if the direction is a unit vector.
+    double slope = 0;
+
+    [[nodiscard]] bool isNone() const {
+        return multiple == std::numeric_limits<double>::infinity();
+    }
+};
+
+/// Unit vectors, one array per component.
+struct Directions {
+    /// Level rays at equal steps: number k points along bearing first + k * step, in the world.
+    struct Arc {
+        Angle first, step;
+        friend bool operator==(const Arc&, const Arc&) = default;
+    };
+
+    std::vector<double> x, y, z;
+    /// Set if the directions form an arc of at most a full turn, for which slices are faster; then
+    /// z is 0.
+    std::optional<Arc> arc = {};
+
+    [[nodiscard]] std::size_t size() const { return x.size(); }
+    void resize(std::size_t count) {
+        x.resize(count);
+        y.resize(count);
+        z.resize(count);
+    }
+    void set(std::size_t i, Vec3 direction) {
+        x[i] = direction.x;
+        y[i] = direction.y;
+        z[i] = direction.z;
+    }
+    [[nodiscard]] Vec3 operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// The rays of a picture through one origin: pixel (column, row) has direction corner + column *
+/// right + row * down, not necessarily of unit length.
+struct RayGrid {
+    Vec3 corner, right, down;
+    int columns = 0, rows = 0;
+
+    [[nodiscard]] std::size_t size() const {
+        return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    }
+    [[nodiscard]] Vec3 ray(int column, int row) const {
+        const double i = column, j = row;
+        return {corner.x + i * right.x + j * down.x, corner.y + i * right.y + j * down.y,
+                corner.z + i * right.z + j * down.z};
+    }
+};
+
+}  // namespace ispace
