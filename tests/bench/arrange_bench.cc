@@ -100,7 +100,7 @@ Result run(const Job& job) {
 /// The reported value is coverage's measurement, and at most the bound.
 void verify(const Job& job, const Arrangement& found) {
     const Scene placed = withPlaced(*job.scene, groupsOf(job), found.sensors);
-    Worlds worlds(placed.environment);
+    RayScenes worlds(placed.environment);
     const double measured =
         measureCoverage(placed, worlds, {.density = job.how.pixel_density, .exact = false})
             .report.coverage.grid.value_or(0);

@@ -60,7 +60,7 @@ Case makeCase(int columns, int rows, std::size_t sensors, const std::string& fol
 
 /// Cells and closed forms agree within the length of all boundaries times the size of a cell.
 void verify(const Case& test) {
-    Worlds worlds(test.scene.environment);
+    RayScenes worlds(test.scene.environment);
     const Coverage coverage = measureCoverage(test.scene, worlds, {.cells = CellCount{1000, 1000}});
     double boundary = 0;
     for (const SensorView& view : coverage.sensors) boundary += perimeter(*view.region);
@@ -84,7 +84,7 @@ void measure(benchmark::State& state, const Case& test, const std::string& folde
     bench::Contest contest;  // of the measurement within the program, on one thread
     const auto inside = [&test](const CoverageOptions& options) {
         bench::shareOut(1, 1, [&](std::size_t) {
-            Worlds worlds(test.scene.environment);
+            RayScenes worlds(test.scene.environment);
             benchmark::DoNotOptimize(measureCoverage(test.scene, worlds, options));
         });
     };

@@ -97,7 +97,7 @@ Image mapOf(int width) {
     scene.sensors = bench::fans(scene, 24, true);
     for (std::size_t i = 0; i < scene.sensors.size(); ++i)
         scene.sensors[i].id = "l" + std::to_string(i);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, {});
     return decodePng(drawCoverageMap(scene, coverage, {.width = width}));
 }

@@ -25,7 +25,7 @@ struct Case {
     std::size_t primitives = 0;
     std::vector<Sensor> sensors;
     bench::RawEmbree raw;
-    Worlds worlds;
+    RayScenes worlds;
     MovingBodies nobody;
     std::vector<Directions> directions;
 

@@ -104,7 +104,7 @@ void verify(const Case& test, const std::string& folder) {
         const std::string bytes = readAll(output);
         const Scene scene = bench::loadScene(test.file);
         const Sensor sensor{"laser1", bench::laserOfModel(use.model), {}};
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const MovingBodies nobody;
         ReadingOptions options;
         if (noisy) options.noise_seed = 0;

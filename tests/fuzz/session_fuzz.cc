@@ -91,7 +91,7 @@ class ServedTower {
   public:
     ServedTower() {
         rooms_.worlds = &run_;
-        for (const JoinedRoom& room : run_.rooms()) {
+        for (const RunRoom& room : run_.rooms()) {
             states_.push_back(std::make_unique<ServerState>(*room.simulation));
             rooms_.states.push_back(states_.back().get());
         }

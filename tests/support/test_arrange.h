@@ -72,7 +72,7 @@ inline LayoutParts partsOf(const Scene& scene) {
 inline CoverageReport reportOf(const Scene& scene, const std::vector<SensorGroup>& groups,
                                const Arrangement& arrangement) {
     const Scene whole = withPlaced(scene, groups, arrangement.sensors);
-    Worlds worlds(whole.environment);
+    RayScenes worlds(whole.environment);
     return measureCoverage(whole, worlds, {.exact = false}).report;
 }
 

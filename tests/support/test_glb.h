@@ -38,17 +38,17 @@ inline std::string errorOf(std::string_view bytes) {
 /// Flips bits in the first `front` bytes of a file, in many ways; reading must never crash. Some
 /// flips are harmless (a mesh's name), so some copies must be read and some rejected.
 inline void surviveFlips(const std::string& glb, std::size_t front, std::uint64_t seed) {
-    constexpr int kWays = 20000;
+    constexpr int kPaths = 20000;
     std::mt19937_64 random(seed);
     int refused = 0;
-    for (int i = 0; i < kWays; ++i) {
+    for (int i = 0; i < kPaths; ++i) {
         std::string bytes = glb;
         for (std::size_t flips = 1 + random() % 3; flips > 0; --flips)
             bytes[random() % front] ^= static_cast<char>(1U << (random() % 8));
         if (errorOf(bytes) != "no error") ++refused;
     }
-    EXPECT_GT(refused, kWays / 20);
-    EXPECT_LT(refused, kWays);
+    EXPECT_GT(refused, kPaths / 20);
+    EXPECT_LT(refused, kPaths);
 }
 
 }  // namespace ispace::testing

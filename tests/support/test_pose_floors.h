@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 #include "geom/overlay/overlay.h"
 #include "geom/polygon.h"
 #include "geom/pose.h"

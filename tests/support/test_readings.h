@@ -20,7 +20,7 @@ namespace ispace::testing {
 inline std::vector<Reading> readings(const Scene& scene, const TakerOptions& options = {},
                                      int frame = 0) {
     const Sensors sensors = sensorsOf(scene, {});
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
     ReadingSampler taker(sensors, worlds, bodies, options);
     std::vector<Reading> out;
@@ -43,7 +43,7 @@ inline std::vector<Scan> scans(const Scene& scene, const TakerOptions& options =
 
 /// Returns the reading of one sensor in an unobstructed scene.
 inline Scan scan(const Scene& scene, const Sensor& sensor) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     worlds.prepare(sensor.pose);
     const MovingBodies nobody;
     Scan out;

@@ -16,7 +16,7 @@ inline Scene sceneOf(const std::string& lines) {
 }
 
 inline Coverage coverageOf(const Scene& scene, int columns = 100, int rows = 100) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, {.cells = CellCount{columns, rows}});
 }
 

@@ -13,7 +13,7 @@
 #include "cli/common_options.h"
 #include "cli/extension.h"
 #include "cli/objective_extension.h"
-#include "cli/presence_ways.h"
+#include "cli/presence_paths.h"
 #include "cli/report_options.h"
 
 namespace ispace {
@@ -33,7 +33,7 @@ struct ArrangeToolOptions {
     std::vector<std::string> fixed;    ///< globs of ids; empty: all placed sensors stay
     ArrangeOptions how;
     ZoneWords zones;
-    std::optional<WaysChoice> presence;               ///< ways that count instead of the floor
+    std::optional<PathsChoice> presence;              ///< ways that count instead of the floor
     std::shared_ptr<const ObjectiveGroup> objective;  ///< of an extension; null: none
     std::string places_file;
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:

@@ -146,7 +146,7 @@ void writeHeat(const ArrangeToolOptions& options, const ArrangeWork& work,
             continue;
         }
         const Scene scene = withPlaced(work.input.only(), work.groups, gains.before);
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const Coverage coverage = measureCoverage(
             scene, worlds, {.plane = work.how.plane, .density = work.how.pixel_density});
         scale = std::max(scale, redundancyScale(coverage.report));

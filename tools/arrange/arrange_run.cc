@@ -219,7 +219,7 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
 /// Looks up the zones of --objective path, each in its room.
 void takeWay(ArrangeWork& work) {
     if (work.how.objective.of != ObjectiveChoice::Of::Path) return;
-    const SiteWay way = wayIn(work.input, "--objective", work.how.objective.way);
+    const SitePath way = wayIn(work.input, "--objective", work.how.objective.way);
     work.goals[way.from.storey].way_from = way.from.zone;
     work.goals[way.to.storey].way_to = way.to.zone;
     work.passages = way.passages;
@@ -366,7 +366,7 @@ std::string reasonForNothing(const ArrangeWork& work, const Arrangement& arrange
         return "the sensors see none of the " + std::string(work.how.demand->many()) +
                ": look at their heights, tilts and ranges";
     if (arrangement.coverage > 0 || arrangement.sensors.empty()) return "";
-    if (!work.how.judges_inside && arrangement.candidate_value > 0) return "";
+    if (!work.how.indoor_only && arrangement.candidate_value > 0) return "";
     if (std::string text = reasonOfDensity(work); !text.empty()) return text;
     return "the sensors cover nothing: look at their heights, tilts and ranges, and at what "
            "`coverage` draws (-o map.png)";

@@ -71,8 +71,8 @@ void ArrangeCommand::settle() {
     if (how.target && how.budget)
         throw UsageError("--target asks for the least cost: leave out --budget");
     for (const std::string& weight : options_.zones.weights) (void)splitWeight(weight);
-    how.judges_inside = words_.judge != "no";
-    if (how.refine && (how.beam_step || !how.judges_inside))
+    how.indoor_only = words_.judge != "no";
+    if (how.refine && (how.beam_step || !how.indoor_only))
         throw UsageError(
             "--refine measures what is in view of the indoor floor: leave out --reso and "
             "--judge no");

@@ -8,7 +8,7 @@
 #include "cli/batch.h"
 #include "cli/common_options.h"
 #include "cli/extension.h"
-#include "cli/presence_ways.h"
+#include "cli/presence_paths.h"
 #include "cli/report_options.h"
 #include "coverage/camera_rules.h"
 #include "coverage/presence_requirement.h"
@@ -46,12 +46,12 @@ struct CoverageToolOptions {
     std::optional<CrowdChoice> crowd;
     std::vector<FacingRule> facing;
     std::vector<PrivacyRule> privacy;
-    std::vector<WayChoice> paths;            ///< of intruders
+    std::vector<PathChoice> paths;           ///< of intruders
     std::optional<double> localise_to;       ///< metres; larger errors of positions count as this
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
-    std::optional<WaysChoice> presence;  ///< ways on which presence is measured
-    std::string run;                     ///< folder of a record of robots and people; "" without
+    std::optional<PathsChoice> presence;  ///< ways on which presence is measured
+    std::string run;                      ///< folder of a record of robots and people; "" without
     MapOptions map;
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;

@@ -20,7 +20,7 @@
 #include "cli/common_options.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
-#include "cli/presence_ways.h"
+#include "cli/presence_paths.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "cli/storey_operands.h"
@@ -82,7 +82,7 @@ void nameInRoom(CoverageToolOptions& options, const SiteInput& input) {
     for (Requirement& requirement : options.requirements) take(requirement.zone);
     for (FacingRule& rule : options.facing) take(rule.zone);
     for (PrivacyRule& rule : options.privacy) take(rule.zones);
-    for (WayChoice& way : options.paths) {
+    for (PathChoice& way : options.paths) {
         take(way.from);
         take(way.to);
     }
@@ -226,13 +226,13 @@ namespace {
 /// Measures --presence in each room: a record's ways, or wanderers on all free floor.
 void measurePresences(const CoverageToolOptions& options, const SiteInput& input,
                       std::vector<std::string>& files, SiteResults& results) {
-    const WaysChoice& choice = *options.presence;
-    const std::vector<RoomWays> ways =
+    const PathsChoice& choice = *options.presence;
+    const std::vector<RoomPaths> ways =
         waysIn(input, "--presence", choice, options.common.seed, options.measure.plane);
     for (std::size_t i = 0; i < ways.size(); ++i) {
         if (!choice.record.empty()) files.push_back(RecordedFiles(ways[i].choice.record).robots);
         Presence presence =
-            measurePresence(*results.coverage.floors[i], readWays(ways[i], *input.rooms()[i]),
+            measurePresence(*results.coverage.floors[i], readPaths(ways[i], *input.rooms()[i]),
                             options.measure.plane);
         nameWholly(storeyOf(input, i), choice.record.empty(), presence);
         results.presence.push_back(std::move(presence));

@@ -22,7 +22,7 @@
 #include "scene/scene.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor_spec.h"
-#include "sense/warnings.h"
+#include "sense/burial.h"
 
 namespace ispace {
 
@@ -435,7 +435,7 @@ class RoomSampler {
 
   private:
     std::shared_ptr<const Scene> scene_;
-    Worlds worlds_;
+    RayScenes worlds_;
     MovingBodies bodies_;
     std::shared_ptr<const Scene> room_;  // by itself
     BurialTest burial_;

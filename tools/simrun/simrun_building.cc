@@ -82,7 +82,7 @@ class BuildingRunSite final : public RunSite {
         run_.simulation().beforeStep([this] { script_->give(run_); });
     }
 
-    JoinedWorlds& worlds() override { return run_; }
+    Worlds& worlds() override { return run_; }
     [[nodiscard]] const Replay* replay(std::size_t room) const override {
         return run_.replay(room);
     }
@@ -97,7 +97,7 @@ class BuildingRunSite final : public RunSite {
         if (std::filesystem::exists(RecordedFiles(options.record).robots))
             throw UsageError("--record: " + options.record +
                              " holds the record of one room: give another folder");
-        for (const JoinedRoom& room : run_.rooms())
+        for (const RunRoom& room : run_.rooms())
             for (const std::string& file : Recorder::filesIn(folderOf(options.record, room)))
                 claimOutput(file, "a file of --record");
     }

@@ -155,7 +155,7 @@ class RoomRunSite final : public RunSite {
         sole_.emplace(*simulation_);
     }
 
-    JoinedWorlds& worlds() override { return *sole_; }
+    Worlds& worlds() override { return *sole_; }
     [[nodiscard]] const Replay* replay(std::size_t /*room*/) const override {
         return replay_ ? &*replay_ : nullptr;
     }
@@ -574,9 +574,9 @@ void endingAtOnce(const std::function<bool()>& is_busy, JunitFile& junit,
 }
 
 /// Waits for the files of the record, if they are read.
-void completeRecords(const SimrunOptions& options, std::span<const JoinedRoom> rooms) {
+void completeRecords(const SimrunOptions& options, std::span<const RunRoom> rooms) {
     if (options.report.empty() && !options.suggestions) return;
-    for (const JoinedRoom& room : rooms)
+    for (const RunRoom& room : rooms)
         for (const std::string& file : Recorder::filesIn(folderOf(options.record, room)))
             completeOutput(file);
 }
@@ -584,9 +584,9 @@ void completeRecords(const SimrunOptions& options, std::span<const JoinedRoom> r
 }  // namespace
 
 void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
-    JoinedWorlds& worlds = site.worlds();
+    Worlds& worlds = site.worlds();
     const auto rooms = worlds.rooms();
-    for (const JoinedRoom& room : rooms)
+    for (const RunRoom& room : rooms)
         warn(options.common, kTool, startWarnings(room.simulation->world()));
     Simulation& simulation = *rooms.front().simulation;
     StepLogs logs(site, options.common);
@@ -597,7 +597,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
     if (options.judges->isAsked()) simulation.keepOrder();
 
     std::vector<std::string> replayed;
-    for (const JoinedRoom& room : rooms) {
+    for (const RunRoom& room : rooms) {
         checkRecord(options, room.simulation->world());
         if (!options.replay.empty()) replayed.push_back(folderOf(options.replay, room));
     }

@@ -11,9 +11,9 @@
 #include "cli/site_operands.h"
 #include "scene/scene.h"
 #include "sim/activity.h"
-#include "sim/joined_worlds.h"
 #include "sim/replay.h"
 #include "sim/world.h"
+#include "sim/worlds.h"
 #include "simrun/simrun_options.h"
 
 namespace ispace {
@@ -27,7 +27,7 @@ class RunSite {
     virtual ~RunSite() = default;
 
     /// Returns the worlds; the first one leads the others.
-    [[nodiscard]] virtual JoinedWorlds& worlds() = 0;
+    [[nodiscard]] virtual Worlds& worlds() = 0;
     /// Returns the replay of a room; null in other runs.
     [[nodiscard]] virtual const Replay* replay(std::size_t room) const = 0;
     /// Records in the folder of --record what belongs to no room, once the rooms are recorded.
@@ -40,7 +40,7 @@ class RunSite {
 };
 
 /// Returns the folder of a room in that of a record: of the only room, the folder itself.
-inline std::string folderOf(const std::string& record, const JoinedRoom& room) {
+inline std::string folderOf(const std::string& record, const RunRoom& room) {
     return room.id.empty() ? record : record + '/' + room.id;
 }
 

@@ -115,7 +115,7 @@ class Adviser {
     [[nodiscard]] MeasuredState after(const MeasuredState& now, std::span<const Edit> edits) {
         Scene changed =
             makeScene(edited(now.scene.records, edits, sceneSchemas()), now.scene, devices_);
-        Worlds worlds(changed.environment);
+        RayScenes worlds(changed.environment);
         CoverageOptions options = options_.measure;
         options.exact = options.exact && now.coverage.report.exact_missing.empty();
         const bool is_by_density =

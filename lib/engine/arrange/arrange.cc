@@ -157,7 +157,7 @@ void measure(Arrangement& result, CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     const bool is_whole_floor = options.target && options.weights.isUniform() &&
                                 !options.robust.isAsked() && options.redundancy == 1 &&
-                                options.judges_inside && !options.beam_step && !options.demand;
+                                options.indoor_only && !options.beam_step && !options.demand;
     const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
     const Measured measured = model.site().isOneRoom() ? measuredRoom(result, model, usual)
                                                        : measuredSite(result, model, usual);
@@ -172,9 +172,9 @@ void measure(Arrangement& result, CoverageModel& model) {
     const std::vector<CountedView> views =
         model.viewsOf(std::span<const Placement>(result.sensors));
     if (!options.robust.isAsked() && options.objective.isCoverage() &&
-        (!options.judges_inside || !measured.is_same_grid))
+        (!options.indoor_only || !measured.is_same_grid))
         result.value = model.shareOf(std::span<const CountedView>(views));
-    result.is_value_by_cells = result.value && options.judges_inside && !options.beam_step &&
+    result.is_value_by_cells = result.value && options.indoor_only && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
                                !options.robust.isAsked() && options.facing.empty() &&
                                !options.demand && options.objective.isCoverage();

@@ -24,7 +24,7 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "coverage/camera_rules.h"
-#include "coverage/least_seen_way.h"
+#include "coverage/least_seen_path.h"
 #include "coverage/target.h"
 #include "scene/scene.h"
 
@@ -84,8 +84,8 @@ struct ObjectiveChoice {
         Localise,  ///< the mean error of positions is least
     };
     Of of = Of::Coverage;
-    WayChoice way = {};  ///< of Path: ids of two zones
-    double within = 1;   ///< of Localise, metres: larger errors, and no position, count as this
+    PathChoice way = {};  ///< of Path: ids of two zones
+    double within = 1;    ///< of Localise, metres: larger errors, and no position, count as this
 
     [[nodiscard]] bool isCoverage() const { return of == Of::Coverage; }
     /// Returns its word in results; "" for coverage.
@@ -139,7 +139,7 @@ struct ArrangeOptions {
     /// The thesis' Insider Judge: sensors stand indoors, and only the indoor floor counts. Without
     /// it, sensors may stand anywhere in the rectangle around the room, all of which counts (fig.
     /// 4.8).
-    bool judges_inside = true;
+    bool indoor_only = true;
     /// Looks only at floor that standing sensors leave uncovered, which is faster. A sensor without
     /// a gain then stands anywhere, and connections are not known.
     bool is_for_gain_alone = false;

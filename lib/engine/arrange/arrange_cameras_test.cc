@@ -284,7 +284,7 @@ TEST(ArrangeCameras, AreRefinedByWhatTheyHaveEnoughPixelsOf) {
             Scene whole = withPlaced(scene, groups, refined.sensors);
             for (Sensor& sensor : whole.sensors)
                 sensor.model = withDensity(sensor.as<Camera>(), pixels_per_metre);
-            Worlds worlds(whole.environment);
+            RayScenes worlds(whole.environment);
             return measureCoverage(whole, worlds, {}).report;
         };
         const CoverageReport report = measured(options.pixel_density);

@@ -90,7 +90,7 @@ TEST(ArrangeRules, FacesCountByTheExactRule) {
     options.facing = facingIn(scene.environment, {&rule, 1});
     const Arrangement found = camerasIn(scene, options, {"camera"});
     const Scene whole = withPlaced(scene, groupsOf(scene, {"camera"}), found.sensors);
-    Worlds worlds(whole.environment);
+    RayScenes worlds(whole.environment);
     const auto faced = measureFacing(whole, measureCoverage(whole, worlds, {}), options.facing);
     ASSERT_EQ(faced.size(), 1U);
     EXPECT_NEAR(found.value.value(), faced[0].share.value(), 0.02);

@@ -192,7 +192,7 @@ TEST(Arrangement, RobotsAndWhatTheyCarryPassThrough) {
     // Their coverage counts, and the result equals the measured coverage.
     const Document written = readRecordText(text, "best.3dm", sceneSchemas());
     const Scene again = roomScene(kTestRoom, &written);
-    Worlds worlds(again.environment);
+    RayScenes worlds(again.environment);
     EXPECT_EQ(measureCoverage(again, worlds, {}).report.coverage.grid, arrangement.coverage);
     ASSERT_EQ(again.sensors.size(), 3U);
     EXPECT_EQ(again.robots.size(), 1U);

@@ -33,7 +33,7 @@ TEST(BeamCells, ResolutionLaysBeamsOverTheSameView) {
 
 TEST(BeamCells, AreThoseWithinTheContour) {
     const Scene scene = roomScene("#env 1\nispace size=8,6\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Pose3 pose{{0.5, 0.25, kScanHeight}, Angle::degrees(30), {}, {}};
     worlds.prepare(pose);
     const Target target = makeTarget(scene.environment, CellSize{0.01}, kScanHeight);
@@ -85,7 +85,7 @@ TEST(Judge, WithoutItTheBestPlaceOfTheLRoomLiesOutside) {
         return arranged(scene, groups, options).sensors.at(0).pose.position.onFloor();
     };
     EXPECT_EQ(scene.environment.indoor().locate(place()), Side::Inside);
-    options.judges_inside = false;
+    options.indoor_only = false;
     EXPECT_EQ(scene.environment.indoor().locate(place()), Side::Outside);
 }
 

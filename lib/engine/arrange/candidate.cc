@@ -124,7 +124,7 @@ struct CandidateViews::Data {
     const SiteErrors* errors = nullptr;    // of mounting; null: none
     const FacingCells* facing = nullptr;   // null: none
     const Demand* demand = nullptr;        // null: its cells are those of the grid
-    const Worlds* worlds = nullptr;        // of the demand
+    const RayScenes* worlds = nullptr;     // of the demand
     SiteSights* sights = nullptr;          // null: of this tilt alone
 
     [[nodiscard]] std::size_t headingsOf(const Site& site) const {
@@ -235,7 +235,7 @@ CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
 
 CandidateViews::~CandidateViews() = default;
 
-void CandidateViews::serve(const Demand& demand, const Worlds& worlds) {
+void CandidateViews::serve(const Demand& demand, const RayScenes& worlds) {
     data_->demand = &demand;
     data_->worlds = &worlds;
     data_->looks_in_slice = false;

@@ -116,8 +116,8 @@ class CandidateViews {
   public:
     /// Views of slice lasers by single beams, see withBeamStep() and cellsByBeams().
     struct ByBeams {
-        const Worlds& worlds;  ///< the world of the mount is prepared
-        Angle step;            ///< 0: the step of each laser
+        const RayScenes& worlds;  ///< the world of the mount is prepared
+        Angle step;               ///< 0: the step of each laser
     };
     /// Stores references.
     /// \param mount only height, tilt and roll are used
@@ -137,7 +137,7 @@ class CandidateViews {
     /// Makes its cells the elements of a demand that a sensor serves, instead of those of the grid.
     /// Stores the references.
     /// \pre the demand accepts the device, `counted` is null, the world of the mount is prepared
-    void serve(const Demand& demand, const Worlds& worlds);
+    void serve(const Demand& demand, const RayScenes& worlds);
 
     /// Keeps the sight of each site for views of the same height and device. Stores the reference.
     void share(SiteSights& sights);

@@ -75,7 +75,7 @@ CellSet privateCells(const PrivacyRule& rule, const Environment& environment,
 
 struct CandidatePool::Data {
     const Environment& environment;
-    Worlds& worlds;
+    RayScenes& worlds;
     const Target& target;
     CandidateWeights weights;
     const ArrangeOptions& options;
@@ -112,7 +112,7 @@ struct CandidatePool::Data {
         SiteRules rules;
         rules.height = height;
         rules.clearance = mount.clearance;
-        rules.judges_inside = options.judges_inside;
+        rules.indoor_only = options.indoor_only;
         for (const NamedZone& zone : mount.keep_out) rules.keep_out.push_back(zone.outline);
         for (const NamedZone& zone : mount.keep_in) rules.keep_in.push_back(zone.outline);
         if (mount.on == MountOn::Wall) rules.wall_within = std::max(options.dist, kOffWall) + 1e-6;
@@ -396,10 +396,10 @@ struct CandidatePool::Data {
     }
 };
 
-CandidatePool::CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
-                             CandidateWeights weights, const ArrangeOptions& options,
-                             Progress& progress, CaseRooms rooms, const FacingCells* facing,
-                             const Demand* demand)
+CandidatePool::CandidatePool(const Environment& environment, RayScenes& worlds,
+                             const Target& target, CandidateWeights weights,
+                             const ArrangeOptions& options, Progress& progress, CaseRooms rooms,
+                             const FacingCells* facing, const Demand* demand)
     : data_(new Data{environment,
                      worlds,
                      target,

@@ -32,7 +32,7 @@ using CaseRooms = std::span<const std::unique_ptr<CaseRoom>>;
 class CandidatePool {
   public:
     /// Stores references.
-    CandidatePool(const Environment& environment, Worlds& worlds, const Target& target,
+    CandidatePool(const Environment& environment, RayScenes& worlds, const Target& target,
                   CandidateWeights weights, const ArrangeOptions& options, Progress& progress,
                   CaseRooms rooms = {}, const FacingCells* facing = nullptr,
                   const Demand* demand = nullptr);

@@ -21,7 +21,7 @@ namespace {
 /// The candidates of one sensor in a scene.
 struct Pooled {
     Scene scene;
-    Worlds worlds;
+    RayScenes worlds;
     Target target;
     std::vector<SensorClass> kinds;
     SilentProgress silent;
@@ -130,7 +130,7 @@ TEST(CandidatePool, FramesCarryWhatLooksDown) {
 /// Draws random sites of a laser in a part of the room with few valid sites.
 CandidatePool::Made drawnIn(const char* zone, int count, Progress& progress) {
     const Scene scene = roomScene();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Target target = makeTarget(scene.environment, CellCount{50, 50}, kScanHeight);
     ArrangeOptions options;
     options.strategy = Strategy::Random;
@@ -174,7 +174,7 @@ TEST(CandidatePool, NoRandomPlaceFoundSoFarIsNotThatThereIsNone) {
 
 /// All candidates of a laser in the room, on a lattice of 0.1 m and along walls, at these heights.
 CandidatePool::Made placedIn(const Scene& scene, std::vector<double> heights, Progress& progress) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Target target = makeTarget(scene.environment, CellCount{50, 50}, kScanHeight);
     ArrangeOptions options;
     options.density = {0.1, 0.1, 2};
@@ -244,7 +244,7 @@ std::vector<Site> latticeOf(int columns, int rows) {
 
 TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
     const Scene scene = roomScene();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     for (const double tilt : {0, -30}) {  // in a slice, through the mesh
         const VisibleArea sight(scene.environment, 0, &worlds);
@@ -269,7 +269,7 @@ TEST(CandidatePool, StoppedAtOnceTheyAreAllOverAnyLattice) {
 
 TEST(CandidatePool, MeshesAreLeftInBetween) {
     const Scene scene = roomScene();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     const VisibleArea sight(scene.environment, 0, &worlds);
     const CandidateViews views(sight, grid, Laser(), {{0, 0, 1}, {}, Angle::degrees(-30), {}});
@@ -301,7 +301,7 @@ TEST(CandidatePool, IndoorTestKeepsTheSensorInTheRoom) {
     bool is_complete = true;
     const std::vector<Site> inside =
         validSites(SiteValidity(room, SiteRules()), everywhere, silent, is_complete);
-    Worlds worlds(room);
+    RayScenes worlds(room);
     const Target target = makeTarget(room, CellCount{100, 100}, kScanHeight);
     Laser laser;
     laser.max_range = 4;

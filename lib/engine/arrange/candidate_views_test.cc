@@ -101,7 +101,7 @@ std::vector<Mounted> devices() {
 /// Candidates see the counted cells that measureCoverage() finds for such a sensor.
 void expectSame(const Scene& scene, const Mounted& mounted, const std::vector<Site>& sites,
                 bool only_free) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Target target = makeTarget(scene.environment, CellCount{40, 30}, kScanHeight);
     constexpr double kPlane = 0.1;
     const VisibleArea sight(scene.environment, kPlane, &worlds);
@@ -253,7 +253,7 @@ TEST(CandidateViews, ManyHeadingsOfAReceiver) {
 
 TEST(CandidateViews, SeeNothingFromWithinSolids) {
     const Scene scene = sceneOf("ispace size=8,6\ncube at=0,0 size=2,2,2\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     SilentProgress quiet;
     for (const Mounted& mounted : devices()) {
@@ -280,7 +280,7 @@ std::vector<Site> manySites(int count) {
 
 TEST(CandidateViews, TheSameForAnyNumberOfThreads) {
     const Scene scene = sceneOf("ispace size=8,6\ncube at=1,1 size=1,1,1\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     const std::vector<Site> sites = manySites(1200);
     const VisibleArea sight(scene.environment, 0, &worlds);
@@ -320,7 +320,7 @@ class ShortProgress final : public Progress {
 
 TEST(CandidateViews, StopEarlyAndWithinMemory) {
     const Scene scene = sceneOf("ispace size=8,6\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     const std::vector<Site> sites = manySites(2000);
     const VisibleArea sight(scene.environment, 0, &worlds);
@@ -368,7 +368,7 @@ void expectEqual(const PosedCandidates& set, const PosedCandidates& expected) {
 
 TEST(CandidateViews, TheOrderInWhichSitesAreLookedAtDoesNotShow) {
     const Scene scene = sceneOf("ispace size=8,6\ncube at=1,1 size=1,1,1\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Grid grid{scene.environment.limits(), 40, 30};
     SilentProgress quiet;
     const std::vector<Mounted> all = devices();

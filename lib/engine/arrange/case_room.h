@@ -45,7 +45,7 @@ struct CaseRoom {
     [[nodiscard]] Sensor mounted(Sensor sensor) const;
 
     Scene scene;  ///< its sensors as they are mounted
-    Worlds worlds;
+    RayScenes worlds;
     VisibleArea sight;
     std::optional<SiteErrors> errors;
     Target target;

@@ -46,7 +46,7 @@ CellStep stepOf(const Grid& grid, Move move) {
     const std::vector<Move> under = cellsUnder(move);
     CellStep step{move.up * grid.columns + move.right, 0, {}};
     const auto part = static_cast<std::uint32_t>(
-        std::lround(length / static_cast<double>(under.size()) / kWayUnit));
+        std::lround(length / static_cast<double>(under.size()) / kPathUnit));
     for (const Move& cell : under)
         step.pieces.push_back(
             {static_cast<std::uint32_t>(cell.up * grid.columns + cell.right), part});
@@ -127,7 +127,7 @@ CellSet landingCellsOf(const Environment& environment, const Target& target, con
     return cells;
 }
 
-std::size_t addFloor(const Environment& environment, const Target& target, CellWays& ways) {
+std::size_t addFloor(const Environment& environment, const Target& target, CellPaths& ways) {
     const Grid& grid = target.grid;
     const std::size_t first = ways.open.size();
     CellFloor& floor = ways.floors.emplace_back();
@@ -159,35 +159,35 @@ std::size_t addFloor(const Environment& environment, const Target& target, CellW
     return first;
 }
 
-void CoverageModel::setWays() {
-    const WayChoice& way = options_.objective.way;
+void CoverageModel::setPaths() {
+    const PathChoice& way = options_.objective.way;
     const std::string name = "between " + printable(way.from) + " and " + printable(way.to);
     const std::size_t all = problem_.cells();
-    cell_ways_.from = cell_ways_.to = CellSet(all);
+    cell_paths_.from = cell_paths_.to = CellSet(all);
     for (std::size_t i = 0; i < rooms_.size(); ++i) {
         if (rooms_[i].model == nullptr) continue;
         const RoomModel& model = *rooms_[i].model;
         const Environment& room = model.scene().environment;
-        const std::size_t first = addFloor(room, model.target(), cell_ways_);
+        const std::size_t first = addFloor(room, model.target(), cell_paths_);
         const auto add = [&](const std::string& zone, CellSet& cells) {
             if (!zone.empty()) cells |= freeCellsOf(room, model.target(), zone, first, all);
         };
-        add(site_.rooms[i].goals.way_from, cell_ways_.from);
-        add(site_.rooms[i].goals.way_to, cell_ways_.to);
+        add(site_.rooms[i].goals.way_from, cell_paths_.from);
+        add(site_.rooms[i].goals.way_to, cell_paths_.to);
     }
     for (const SitePassage& passage : site_.passages) {
-        CellSet& cells = cell_ways_.passages.emplace_back(all);
+        CellSet& cells = cell_paths_.passages.emplace_back(all);
         for (const auto& [room, floor] : passage.landings)
             if (rooms_[room].model != nullptr)
                 cells |= landingCellsOf(rooms_[room].model->scene().environment,
                                         rooms_[room].model->target(), floor,
                                         cellsOfRoom(room).first, all);
     }
-    if (!cell_ways_.exist())
+    if (!cell_paths_.exist())
         throw UnmetError("no way " + name + " leads over free cells (--cell M makes them smaller)");
-    cases_.ways = &cell_ways_;
+    cases_.ways = &cell_paths_;
     cases_.blocks = {{0, problem_.cells()}};
-    cases_.shortest = cell_ways_.leastSeen([](std::uint32_t) { return true; }).seen;
+    cases_.shortest = cell_paths_.leastSeen([](std::uint32_t) { return true; }).seen;
     if (cases_.shortest == 0) throw UnmetError("the zones touch: a way " + name + " is never seen");
     total_ = cases_.shortest;
 }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "arrange/search/cell_ways.h"
+#include "arrange/search/cell_paths.h"
 #include "base/cell_set.h"
 #include "coverage/target.h"
 #include "env/environment.h"
@@ -14,14 +14,14 @@
 namespace ispace {
 
 /// Unit of the lengths of ways, metres.
-constexpr double kWayUnit = 1e-4;
+constexpr double kPathUnit = 1e-4;
 
 /// Adds the floor of a room: ways of a point over the centres of free cells. Steps lead to the 16
 /// neighbours that are a king's or a knight's move away, if all cells under them are free and no
 /// wall crosses them. No way is longer than the shortest one over free floor by more than 2.8 %,
 /// besides two cells at each corner that it passes.
 /// \returns the first of its cells
-std::size_t addFloor(const Environment& environment, const Target& target, CellWays& ways);
+std::size_t addFloor(const Environment& environment, const Target& target, CellPaths& ways);
 
 /// Returns the free cells of a zone, from `first` on, of `all` cells.
 /// \throws UsageError for an unknown zone, and for one without a free cell

@@ -99,7 +99,7 @@ class CoarseSight {
     /// and for sensors that cast no rays to cells. Valid until the next call.
     std::vector<KnownSight*> knownFrom(const Sensor& sensor, std::span<const Pose3> poses);
 
-    Worlds worlds_;
+    RayScenes worlds_;
     VisibleArea sight_;
     Target target_;
     double cell_ = 0;  // m2

@@ -64,7 +64,7 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
     setUnits();
     addRooms();
     if (options.robust.isAsked()) stackCases();
-    if (options.objective.of == ObjectiveChoice::Of::Path) setWays();
+    if (options.objective.of == ObjectiveChoice::Of::Path) setPaths();
     if (options.objective.of == ObjectiveChoice::Of::Localise) total_ *= kNoError;
     const std::vector<std::uint32_t> left = weightsLeft();
     for (Room& room : rooms_) {
@@ -715,7 +715,7 @@ std::uint64_t CoverageModel::maxFromAnyPlace(const std::vector<int>& most) const
 
 namespace {
 
-void addSliceAreas(Worlds& worlds, const Laser& laser, std::span<TriedPose> poses) {
+void addSliceAreas(RayScenes& worlds, const Laser& laser, std::span<TriedPose> poses) {
     for (const TriedPose& tried : poses) worlds.prepare(tried.pose);
     tbb::parallel_for(std::size_t{0}, poses.size(), [&](std::size_t i) {
         const Sensor placed{"", laser, poses[i].pose};

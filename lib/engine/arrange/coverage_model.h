@@ -16,7 +16,7 @@
 #include "arrange/arrange.h"
 #include "arrange/candidate_generator.h"
 #include "arrange/room_model.h"
-#include "arrange/search/cell_ways.h"
+#include "arrange/search/cell_paths.h"
 #include "arrange/search/problem.h"
 #include "arrange/search/worst_case.h"
 #include "arrange/sensor_group.h"
@@ -102,7 +102,7 @@ class CoverageModel {
     [[nodiscard]] RobustValues robustValuesOf(std::span<const CountedView> views,
                                               std::span<const Placement> sensors) const;
     /// Returns the length of the least seen way with these sensors and the standing ones, in units
-    /// of kWayUnit. \pre the objective is a path
+    /// of kPathUnit. \pre the objective is a path
     [[nodiscard]] std::uint64_t leastSeen(std::span<const CountedView> views) const;
     /// Returns true if the search maximises the worst case; its values are those of worstCase().
     [[nodiscard]] bool isWorstCase() const {
@@ -200,7 +200,7 @@ class CoverageModel {
     /// Returns the rooms in a case.
     [[nodiscard]] SiteCase siteIn(std::size_t number) const;
     /// Sets the ways of an intruder. \throws UnmetError if there is none, or none that can be seen
-    void setWays();
+    void setPaths();
     void addKinds(Progress& progress);
     /// Sets the regions in which coverage is to be connected: parts().
     void addRegions();
@@ -247,7 +247,7 @@ class CoverageModel {
     std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< multiplicity of sensors other than receivers
     std::vector<Room> rooms_;
-    CellWays cell_ways_;
+    CellPaths cell_paths_;
     WorstCaseProblem cases_;
     std::size_t view_cases_ = 0;  ///< cases in which views differ; 0 without
     std::vector<std::shared_ptr<const RoomSight>> case_sights_;

@@ -9,7 +9,7 @@ std::string Demand::finding(std::span<const ServedDemand> /*rooms*/, double /*bo
     return "";
 }
 
-CellSet Demand::servedBy(const Sensor& sensor, const Worlds& worlds) const {
+CellSet Demand::servedBy(const Sensor& sensor, const RayScenes& worlds) const {
     const Point3 place = sensor.pose.position;
     if (!isServedBy(sensor) || worlds.environment().level(place.z)->isInsideSolid(place.onFloor()))
         return CellSet(weights().size());

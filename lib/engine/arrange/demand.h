@@ -68,14 +68,14 @@ class Demand {
     /// Finds what sensors with any heading at one position, height, tilt and roll share: 1 for each
     /// element that no surface hides. \pre `worlds` are prepared for the pose and the kind
     [[nodiscard]] virtual std::vector<std::uint8_t> sightOf(const Sensor& sensor,
-                                                            const Worlds& worlds) const = 0;
+                                                            const RayScenes& worlds) const = 0;
     /// Finds the elements that a sensor serves. \pre isServedBy(sensor), `sight` is that of its
     /// position, outside of solids
     [[nodiscard]] virtual CellSet servedBy(const Sensor& sensor,
                                            const std::vector<std::uint8_t>& sight) const = 0;
     /// The same for a sensor of the scene, empty unless isServedBy(sensor) and outside of solids.
     /// \pre as sightOf()
-    [[nodiscard]] CellSet servedBy(const Sensor& sensor, const Worlds& worlds) const;
+    [[nodiscard]] CellSet servedBy(const Sensor& sensor, const RayScenes& worlds) const;
 
   protected:
     Demand() = default;

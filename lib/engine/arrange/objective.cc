@@ -54,7 +54,7 @@ SearchResult findWorstCase(const CoverageModel& model, Progress& progress) {
 void reportPath(const CoverageModel& model, std::span<const CountedView> views,
                 Arrangement& result) {
     result.value = model.share(model.leastSeen(views));
-    result.whole = static_cast<double>(model.cases().shortest) * kWayUnit;
+    result.whole = static_cast<double>(model.cases().shortest) * kPathUnit;
 }
 
 void reportLocalised(const CoverageModel& model, std::span<const CountedView> views,

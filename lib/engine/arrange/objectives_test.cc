@@ -31,7 +31,7 @@ ArrangeOptions localiseOptions(double within, Optimizer optimizer = Optimizer::S
 }
 
 Coverage measuredOf(const Scene& scene) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, {});
 }
 
@@ -45,7 +45,7 @@ TEST(ArrangePath, ASensorThatReachesAcrossIsSeenByAllWays) {
     EXPECT_NEAR(found.candidate_value, *found.value, 1e-9);
     EXPECT_GE(found.bound, *found.value);
     const Scene placed = withPlaced(scene, groups, found.sensors);
-    const LeastSeenWay way = findLeastSeenWay(placed, measuredOf(placed), {"a", "b"});
+    const LeastSeenPath way = findLeastSeenPath(placed, measuredOf(placed), {"a", "b"});
     EXPECT_NEAR(*way.seen, *found.value * *found.whole, 0.4);
     EXPECT_GT(*way.seen, 7.4);
 }
@@ -66,8 +66,8 @@ TEST(ArrangePath, BoundAndExactHoldForAllLayouts) {
     const Arrangement coverage = arranged(scene, groups, plain);
     const Scene covering = withPlaced(scene, groups, coverage.sensors);
     const Scene guarding = withPlaced(scene, groups, exact.sensors);
-    EXPECT_GE(*findLeastSeenWay(guarding, measuredOf(guarding), {"a", "b"}).seen,
-              *findLeastSeenWay(covering, measuredOf(covering), {"a", "b"}).seen - 0.5);
+    EXPECT_GE(*findLeastSeenPath(guarding, measuredOf(guarding), {"a", "b"}).seen,
+              *findLeastSeenPath(covering, measuredOf(covering), {"a", "b"}).seen - 0.5);
 }
 
 TEST(ArrangePath, TellsOfZonesThatTouchOrThatNoWayJoins) {
@@ -86,17 +86,17 @@ TEST(CellFloor, WaysAreAsLongAsTheyAre) {
     const auto length = [](const std::string& more) {
         const Scene scene = roomScene(kGuarded + more);
         const Target target = makeTarget(scene.environment, CellSize{0.1}, kScanHeight);
-        CellWays ways;
+        CellPaths ways;
         EXPECT_EQ(addFloor(scene.environment, target, ways), 0U);
         const std::size_t all = target.grid.size();
         ways.from = freeCellsOf(scene.environment, target, "a", 0, all);
         ways.to = freeCellsOf(scene.environment, target, "b", 0, all);
-        const CellWay way = ways.leastSeen([](std::uint32_t) { return true; });
+        const CellPath way = ways.leastSeen([](std::uint32_t) { return true; });
         EXPECT_TRUE(ways.exist());
         std::uint64_t sum = 0;
-        for (const WayCell& cell : way.cells) sum += cell.length;
+        for (const PathCell& cell : way.cells) sum += cell.length;
         EXPECT_EQ(sum, way.seen);
-        return static_cast<double>(way.seen) * kWayUnit;
+        return static_cast<double>(way.seen) * kPathUnit;
     };
     EXPECT_NEAR(length(""), 8, 0.11);
     const double around = length(

@@ -79,7 +79,7 @@ const Laser& laserOf(const Scene& scene, const std::vector<SensorGroup>& groups,
 void measurePlaced(const Scene& scene, const std::vector<SensorGroup>& groups,
                    const ArrangeOptions& options, Arrangement& result) {
     const Scene whole = withPlaced(scene, groups, result.sensors);
-    Worlds worlds(whole.environment);
+    RayScenes worlds(whole.environment);
     const Coverage measured =
         measureCoverage(whole, worlds, {.plane = options.plane, .exact = false});
     result.coverage = measured.report.coverage.grid.value_or(0);
@@ -260,7 +260,7 @@ poses::FloorWeighting weightingOf(const FloorWeights& weights) {
 void mustBeBoundable(const Scene& scene, const std::vector<SensorGroup>& groups,
                      const ArrangeOptions& options) {
     mustStandAlone(scene, groups);
-    if (options.is_connected || options.budget || options.beam_step || !options.judges_inside)
+    if (options.is_connected || options.budget || options.beam_step || !options.indoor_only)
         refusePoses("indoor floor counts, for a given number of sensors");
     const SensorGroup& group = groups.front();
     const auto* laser = std::get_if<Laser>(&group.model);
@@ -409,7 +409,7 @@ CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int tim
     checked.check = checkCertificate(floor, kCells, sectorOf(*first, bounds(floor)),
                                      static_cast<int>(checked.sensors),
                                      {times, weightingOf(weights)}, certificate, name);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     if (times == 1 && weights.isUniform()) {
         checked.floor = totalArea(floor);
         const CoverageReport report = measureCoverage(scene, worlds, {}).report;

@@ -7,7 +7,7 @@
 #include "arrange/arrange.h"
 #include "arrange/check_guards.h"
 #include "arrange/poses/certificate.h"
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 #include "arrange/sensor_group.h"
 #include "base/error.h"
 #include "scene/scene.h"

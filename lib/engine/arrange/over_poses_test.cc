@@ -159,7 +159,7 @@ TEST(OverPoses, CoverageOfProvenGalleriesIsWhole) {
                 const Arrangement found = arranged(scene, groups, provenOverPoses());
                 if (!found.is_reached) continue;  // on a slow machine
                 const Scene whole = withPlaced(scene, groups, found.sensors);
-                Worlds worlds(whole.environment);
+                RayScenes worlds(whole.environment);
                 const CoverageReport report =
                     measureCoverage(whole, worlds, {.keep_depths = false}).report;
                 EXPECT_NEAR(*report.coverage.exact, 1, 1e-8) << name << ' ' << sensor;

@@ -75,7 +75,7 @@ struct SiteValidity::Data {
           level(environment.level(rules.height)),
           keep_out(rules.keep_out),
           keep_in(rules.keep_in) {
-        if (!rules.judges_inside || rules.clearance > kWeldDistance)
+        if (!rules.indoor_only || rules.clearance > kWeldDistance)
             obstacles.emplace(linesOf(environment.indoor(), level->slice()));
         if (rules.wall_within) walls.emplace(linesOf(wallSlice(environment, rules.height)));
     }
@@ -94,9 +94,9 @@ SiteValidity::~SiteValidity() = default;
 bool SiteValidity::isValid(Point2 place) const {
     const Data& data = *data_;
     const SiteRules& rules = data.rules;
-    const bool is_free = rules.judges_inside ? data.level->isFree(place)
-                                             : !data.level->isInsideSolid(place) &&
-                                                   !data.obstacles->anyWithin(place, kWeldDistance);
+    const bool is_free = rules.indoor_only ? data.level->isFree(place)
+                                           : !data.level->isInsideSolid(place) &&
+                                                 !data.obstacles->anyWithin(place, kWeldDistance);
     if (!is_free || data.keep_out.holder(place)) return false;
     if (!data.keep_in.empty() && !data.keep_in.holder(place)) return false;
     // Distances round: a site at exactly the required distance is valid.

@@ -137,7 +137,7 @@ std::vector<Point3> framePlaces(const Environment& environment, double step);
 /// site: a site at exactly the required distance is valid.
 struct SiteRules {
     double height = kScanHeight;
-    bool judges_inside = true;      ///< the thesis' Insider Judge: indoors only
+    bool indoor_only = true;        ///< the thesis' Insider Judge: indoors only
     double clearance = 0;           ///< least distance from walls and objects at this height
     std::vector<Polygon> keep_out;  ///< closed
     std::vector<Polygon> keep_in;   ///< closed; if any: a site lies in one of them

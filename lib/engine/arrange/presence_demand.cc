@@ -14,10 +14,10 @@ namespace {
 
 class PresenceDemand : public Demand {
   public:
-    PresenceDemand(std::shared_ptr<const PeopleWays> ways, double plane)
+    PresenceDemand(std::shared_ptr<const PeoplePaths> ways, double plane)
         : ways_(std::move(ways)), view_(*ways_, plane) {
         weights_.reserve(ways_->pieces.size());
-        for (const WayPiece& piece : ways_->pieces) weights_.push_back(piece.length);
+        for (const PathPiece& piece : ways_->pieces) weights_.push_back(piece.length);
     }
 
     [[nodiscard]] std::string option() const override { return "--presence"; }
@@ -29,7 +29,7 @@ class PresenceDemand : public Demand {
     }
     [[nodiscard]] std::string content() const override {
         std::string text;
-        for (const WayPiece& piece : ways_->pieces)
+        for (const PathPiece& piece : ways_->pieces)
             for (const double part : {static_cast<double>(piece.person), piece.time, piece.place.x,
                                       piece.place.y, piece.velocity.x, piece.velocity.y})
                 text.append(formatDouble(part)) += ' ';
@@ -44,7 +44,7 @@ class PresenceDemand : public Demand {
         return detectsMotion(sensor.model) && !sensor.mount && !sensor.person;
     }
     [[nodiscard]] std::vector<std::uint8_t> sightOf(const Sensor& sensor,
-                                                    const Worlds& worlds) const override {
+                                                    const RayScenes& worlds) const override {
         return view_.unhidden(worlds.mesh(kindOf(sensor.model).stopped_by), sensor);
     }
     using Demand::servedBy;
@@ -54,14 +54,15 @@ class PresenceDemand : public Demand {
     }
 
   private:
-    std::shared_ptr<const PeopleWays> ways_;
+    std::shared_ptr<const PeoplePaths> ways_;
     PresenceView view_;
     std::vector<double> weights_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Demand> presenceDemand(std::shared_ptr<const PeopleWays> ways, double plane) {
+std::shared_ptr<const Demand> presenceDemand(std::shared_ptr<const PeoplePaths> ways,
+                                             double plane) {
     return std::make_shared<PresenceDemand>(std::move(ways), plane);
 }
 

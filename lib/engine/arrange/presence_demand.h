@@ -4,13 +4,13 @@
 #include <memory>
 
 #include "arrange/demand.h"
-#include "scene/run/people_ways.h"
+#include "scene/run/people_paths.h"
 
 namespace ispace {
 
 /// Returns the demand of `--presence`: the pieces of these ways, by length, each served by a sensor
 /// that detects the person there within kPresenceDelay, see PresenceView.
 /// \param plane height at which people are detected
-std::shared_ptr<const Demand> presenceDemand(std::shared_ptr<const PeopleWays> ways, double plane);
+std::shared_ptr<const Demand> presenceDemand(std::shared_ptr<const PeoplePaths> ways, double plane);
 
 }  // namespace ispace

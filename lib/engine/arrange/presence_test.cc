@@ -16,11 +16,11 @@ namespace {
 constexpr const char* kTwoRooms = "#env 1\nispace size=8,6,2.5\nwall from=0,-3 to=0,2.9\n";
 
 /// A person walks through the left half, and another one a third as far in the right half.
-PeopleWays waysInBoth() {
-    WayCutter cutter;
+PeoplePaths waysInBoth() {
+    PathCutter cutter;
     for (int i = 0; i <= 30; ++i) {
-        cutter.add("left", i * kWayStep, {-3, -2.5 + 0.15 * i});
-        cutter.add("right", i * kWayStep, {3, -2.5 + 0.05 * i});
+        cutter.add("left", i * kPathStep, {-3, -2.5 + 0.15 * i});
+        cutter.add("right", i * kPathStep, {3, -2.5 + 0.05 * i});
     }
     return cutter.finish();
 }
@@ -35,7 +35,7 @@ TEST(ArrangePresence, ValueIsTheShareThatCoverageMeasures) {
     const Scene scene = roomScene(kTwoRooms);
     const auto groups = groupsOf(scene, {"pir,range=2"});
     ArrangeOptions options = coarse(Optimizer::Exact);
-    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
+    options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     const Arrangement one = arranged(scene, groups, options);
     ASSERT_TRUE(one.value);
     EXPECT_NEAR(*one.value, presenceOf(scene, groups, one, options), 1e-6);
@@ -48,7 +48,7 @@ TEST(ArrangePresence, ATargetIsReachedWithTheFewestInEveryRoom) {
     const Scene scene = roomScene(kTwoRooms);
     const auto groups = groupsOf(scene, {"pir"}, true);
     ArrangeOptions options = coarse(Optimizer::Exact);
-    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
+    options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     options.target = 0.95;
     const Arrangement few = arranged(scene, groups, options);
     EXPECT_TRUE(few.is_reached);
@@ -62,7 +62,7 @@ TEST(ArrangePresence, CountsSensorsThatStand) {
     const Scene scene = roomScene(kTwoRooms, &layout);
     const auto groups = groupsOf(scene, {"pir"});
     ArrangeOptions options = coarse(Optimizer::Exact);
-    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
+    options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     const Arrangement other = arranged(scene, groups, options);
     EXPECT_GT(other.sensors.at(0).pose.position.x, 0) << "m1 watches the left";
     EXPECT_NEAR(*other.value, presenceOf(scene, groups, other, options), 1e-6);
@@ -71,9 +71,9 @@ TEST(ArrangePresence, CountsSensorsThatStand) {
 TEST(ArrangePresence, RefusesSensorsWithoutSenseOfMotionAndWaysOfNobody) {
     const Scene scene = roomScene(kTwoRooms);
     ArrangeOptions options = coarse();
-    options.demand = presenceDemand(std::make_shared<PeopleWays>(waysInBoth()), 0);
+    options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UsageError);
-    options.demand = presenceDemand(std::make_shared<PeopleWays>(), 0);
+    options.demand = presenceDemand(std::make_shared<PeoplePaths>(), 0);
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"pir"}), options), UnmetError);
 }
 

@@ -25,21 +25,21 @@ constexpr double kMinGain = 1e-9;
 constexpr std::size_t kMaxRounds = 200;
 
 /// A step of one length along some of the axes.
-struct Way {
+struct Direction {
     int x = 0, y = 0, turn = 0;
 
     [[nodiscard]] int axes() const { return std::abs(x) + std::abs(y) + std::abs(turn); }
 };
 
 /// Returns all ways, first those along one axis, then along two and three.
-std::vector<Way> waysFor(bool turns) {
-    std::vector<Way> ways;
+std::vector<Direction> waysFor(bool turns) {
+    std::vector<Direction> ways;
     ways.reserve(26);
     for (int axes = 1; axes <= 3; ++axes)
         for (const int turn : {0, 1, -1})
             for (const int y : {0, 1, -1})
                 for (const int x : {0, 1, -1})
-                    if (const Way way{x, y, turn}; way.axes() == axes && (turns || turn == 0))
+                    if (const Direction way{x, y, turn}; way.axes() == axes && (turns || turn == 0))
                         ways.push_back(way);
     return ways;
 }
@@ -62,7 +62,7 @@ std::vector<Stride> stridesOf(const RefineOptions& options) {
 
 double onLattice(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
-Pose3 stepped(const Pose3& pose, const Way& way, const Stride& stride) {
+Pose3 stepped(const Pose3& pose, const Direction& way, const Stride& stride) {
     Pose3 next = pose;
     next.position.x = onLattice(pose.position.x + way.x * stride.metres, kPerMetre);
     next.position.y = onLattice(pose.position.y + way.y * stride.metres, kPerMetre);
@@ -116,13 +116,13 @@ class Search {
     bool improve(std::size_t sensor, const Stride& stride) {
         if (progress_.stopped()) return false;
         gain_.take(sensor);
-        const std::vector<Way> ways = waysFor(gain_.turns(sensor));
+        const std::vector<Direction> ways = waysFor(gain_.turns(sensor));
         double gain = gain_.gains(std::span(&poses_[sensor], 1))[0];
         ++evaluations_;
         const double first = gain;
-        while (const auto way = bestWay(sensor, ways, stride, gain)) {
+        while (const auto way = bestDirection(sensor, ways, stride, gain)) {
             // Goes on along it as long as that gains.
-            while (bestWay(sensor, std::span(&*way, 1), stride, gain)) continue;
+            while (bestDirection(sensor, std::span(&*way, 1), stride, gain)) continue;
         }
         if (gain == first) return false;
         gain_.put(poses_[sensor]);
@@ -133,8 +133,8 @@ class Search {
     }
 
     /// Finds the best step, along few axes if one of them gains; empty if no step gains.
-    std::optional<Way> bestWay(std::size_t sensor, std::span<const Way> ways, const Stride& stride,
-                               double& gain) {
+    std::optional<Direction> bestDirection(std::size_t sensor, std::span<const Direction> ways,
+                                           const Stride& stride, double& gain) {
         for (std::size_t begin = 0; begin < ways.size();) {
             std::size_t end = begin;
             while (end < ways.size() && ways[end].axes() == ways[begin].axes()) ++end;
@@ -145,14 +145,14 @@ class Search {
         return std::nullopt;
     }
 
-    std::optional<Way> bestOf(std::size_t sensor, std::span<const Way> ways, const Stride& stride,
-                              double& gain) {
+    std::optional<Direction> bestOf(std::size_t sensor, std::span<const Direction> ways,
+                                    const Stride& stride, double& gain) {
         if (progress_.stopped()) return std::nullopt;
         std::vector<Pose3> trials;
-        std::vector<Way> taken;
+        std::vector<Direction> taken;
         trials.reserve(ways.size());
         taken.reserve(ways.size());
-        for (const Way& way : ways) {
+        for (const Direction& way : ways) {
             const Pose3 trial = stepped(poses_[sensor], way, stride);
             const bool moves = trial.position != poses_[sensor].position;
             if (moves && options_.is_valid && !options_.is_valid(sensor, trial.position.onFloor()))

@@ -37,7 +37,7 @@ const Scene& movedRoom(const ArrangeOptions& options) {
 }
 
 double coverageOf(const Scene& scene) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, {.exact = false}).report.coverage.grid.value_or(0);
 }
 
@@ -118,7 +118,7 @@ TEST(Robust, ValueOfFailuresIsThatOfCoverage) {
         options.robust.failures = failures;
         const Arrangement found = arranged(scene, groups, options);
         const Scene whole = withPlaced(scene, groups, found.sensors);
-        Worlds worlds(whole.environment);
+        RayScenes worlds(whole.environment);
         const Coverage coverage = measureCoverage(whole, worlds, {.exact = false});
         const auto losses = worstFailures(whole, coverage, failures, {});
         EXPECT_NEAR(*found.value, losses[0].worst, 1e-9);
@@ -129,7 +129,7 @@ TEST(Robust, ValueOfFailuresIsThatOfCoverage) {
         // More than the plain layout keeps.
         ArrangeOptions plain = coarse();
         const Scene other = withPlaced(scene, groups, arranged(scene, groups, plain).sensors);
-        Worlds other_worlds(other.environment);
+        RayScenes other_worlds(other.environment);
         const Coverage of_plain = measureCoverage(other, other_worlds, {.exact = false});
         EXPECT_GE(losses[0].worst, worstFailures(other, of_plain, failures, {})[0].worst);
     }

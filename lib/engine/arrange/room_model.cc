@@ -50,7 +50,7 @@ RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
         measureCoverage(*scene_, worlds_,
                         {.cells = searchCells(options_), .plane = options_.plane, .exact = false});
     target_ = standing.target;
-    if (!options_.judges_inside)
+    if (!options_.indoor_only)
         for (std::size_t i = 0; i < target_.indoor.size(); ++i) target_.indoor.set(i);
     weights_ = cellWeights(target_, options_);
     if (!room.goals.counts) std::fill(weights_.begin(), weights_.end(), 0);
@@ -74,7 +74,7 @@ double RoomModel::areaOfCell(const Scene& scene, const Target& target) const {
     if (options_.demand) return 1;
     const Grid& grid = target.grid;
     const std::size_t indoor = target.indoor.count();
-    if (!options_.judges_inside || indoor == 0)
+    if (!options_.indoor_only || indoor == 0)
         return grid.limits.width() * grid.limits.depth() / static_cast<double>(grid.size());
     return scene.environment.indoor().area() / static_cast<double>(indoor);
 }

@@ -44,7 +44,7 @@ class RoomModel {
     /// Returns the options with the goals of the room.
     [[nodiscard]] const ArrangeOptions& options() const { return options_; }
     [[nodiscard]] const Target& target() const { return target_; }
-    Worlds& worlds() { return worlds_; }
+    RayScenes& worlds() { return worlds_; }
     /// Computes the visible areas of sensors in the room.
     [[nodiscard]] const VisibleArea& sight() const { return sight_; }
     /// Returns the rooms of the cases; empty: not robust, or not yet.
@@ -84,7 +84,7 @@ class RoomModel {
     std::shared_ptr<const Scene> scene_;
     ArrangeOptions options_;
     int unit_;
-    Worlds worlds_;
+    RayScenes worlds_;
     VisibleArea sight_;
     Target target_;
     std::vector<double> weights_;

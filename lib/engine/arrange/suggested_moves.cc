@@ -90,7 +90,7 @@ std::optional<double> MoveTrials::gainIn(const Environment& changed) {
     std::vector<const View*> near;
     for (const View& view : views_)
         if (bodies->meet(view.reach)) near.push_back(&view);
-    Worlds worlds(changed);
+    RayScenes worlds(changed);
     const VisibleArea sight(changed, plane_, &worlds);
     for (const View* const view : near) sight.prepare(view->sensor);
     std::vector<CellChanges> changes(near.size());

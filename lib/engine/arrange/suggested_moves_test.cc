@@ -26,7 +26,7 @@ struct Measured {
 };
 
 Measured measure(Scene scene, const CoverageOptions& options) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     Coverage coverage = measureCoverage(scene, worlds, options);
     return {std::move(scene), std::move(coverage)};
 }

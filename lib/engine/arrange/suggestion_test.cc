@@ -26,7 +26,7 @@ struct Advised {
 };
 
 Coverage coverageOf(const Scene& scene, const CoverageOptions& options) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, options);
 }
 

@@ -217,11 +217,11 @@ std::vector<std::string> inOwnStorey(const SiteInput& input,
     return own;
 }
 
-SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& way) {
+SitePath wayIn(const SiteInput& input, std::string_view option, const PathChoice& way) {
     if (!input.isOneRoom())
         return {zoneOfStorey(input.building, option, way.from),
                 zoneOfStorey(input.building, option, way.to), sitePassages(input.building)};
-    SiteWay found{{0, inOwnStorey(input, way.from)}, {0, inOwnStorey(input, way.to)}};
+    SitePath found{{0, inOwnStorey(input, way.from)}, {0, inOwnStorey(input, way.to)}};
     for (const StoreyZone* at : {&found.from, &found.to})
         static_cast<void>(ofOption(std::string(option),
                                    [&] { return readZone(at->zone, input.only().environment); }));

@@ -143,12 +143,12 @@ std::string inOwnStorey(const SiteInput& input, const std::string& text);
 std::vector<std::string> inOwnStorey(const SiteInput& input, const std::vector<std::string>& texts);
 
 /// The zones between which a way leads; of a room alone in its only storey.
-struct SiteWay {
+struct SitePath {
     StoreyZone from, to;
     std::vector<SitePassage> passages = {};  ///< of a building
 };
 /// Finds these zones. \throws UsageError as zoneOfStorey()
-SiteWay wayIn(const SiteInput& input, std::string_view option, const WayChoice& way);
+SitePath wayIn(const SiteInput& input, std::string_view option, const PathChoice& way);
 
 /// \throws UsageError saying that an option needs one room, with the storeys to choose from;
 /// accepts "" and a room alone

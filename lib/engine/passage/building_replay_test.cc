@@ -66,7 +66,7 @@ class BuildingReplayTest : public ::testing::Test {
     BuildingReplayTest() {
         BuildingRun run(building_, {.step = kStep, .clock = {Clock::Kind::Step}});
         std::vector<std::unique_ptr<Recorder>> recorders;
-        for (const JoinedRoom& room : run.rooms()) {
+        for (const RunRoom& room : run.rooms()) {
             recorders.push_back(
                 std::make_unique<Recorder>(folder_ / room.id, room.simulation->world(),
                                            RecordOptions(), &room.simulation->events()));
@@ -122,7 +122,7 @@ TEST_F(BuildingReplayTest, IsRecordedAnew) {
     const testing::TestFolder again;
     BuildingRun run(building_, options());
     std::vector<std::unique_ptr<Recorder>> recorders;
-    for (const JoinedRoom& room : run.rooms()) {
+    for (const RunRoom& room : run.rooms()) {
         recorders.push_back(std::make_unique<Recorder>(again / room.id, room.simulation->world(),
                                                        RecordOptions(),
                                                        &room.simulation->events()));

@@ -84,7 +84,7 @@ void BuildingRun::Data::restart() {
         const World& world = worldOf(who);
         const std::size_t index = world.moverNamed(id).value();
         endCommands(who, world.running(index));
-        before.emplace(id, Before{who.room, world.carried(index)});
+        before.emplace(id, Before{who.room, world.exportMover(index)});
     }
     for (Room& room : rooms) {
         room.world->restart(Scene(*room.world->sharedStart()));
@@ -100,7 +100,7 @@ void BuildingRun::Data::restart() {
     for (const auto& [id, was] : before) {
         const Traveller& who = travellers.find(id)->second;
         World& world = worldOf(who);
-        world.countOn(world.moverNamed(id).value(), *was.state);
+        world.continueIds(world.moverNamed(id).value(), *was.state);
         if (was.room == who.room) continue;
         for (const Observer& observer : observers) observer(id, was.room, who.room);
     }

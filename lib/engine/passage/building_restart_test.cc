@@ -134,7 +134,7 @@ TEST(BuildingPlace, LeavesAllAsItIsIfRefused) {
 /// Poses of all movers, and the lifts.
 std::string stateText(const BuildingRun& run) {
     std::string text;
-    for (const JoinedRoom& room : run.rooms()) {
+    for (const RunRoom& room : run.rooms()) {
         const World& world = room.simulation->world();
         text += room.id + ':';
         for (std::size_t i = 0; i < world.movers().size(); ++i) {

@@ -246,9 +246,9 @@ std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose
         return error.diagnostics().front().message;
     }
     if (is_put) endCommands(who, left.running(left.moverNamed(who.id).value()));
-    const auto state = left.carried(left.moverNamed(who.id).value());
+    const auto state = left.exportMover(left.moverNamed(who.id).value());
     who.records = std::move(moved);
-    entered.resume(entered.moverNamed(who.id).value(), *state);
+    entered.importMover(entered.moverNamed(who.id).value(), *state);
     change(from, without, {deleted});
     who.room = room;
     for (const Observer& observer : observers) observer(who.id, from, room);
@@ -296,7 +296,7 @@ void BuildingRun::recordLifts(const std::string& file) {
     data_->lift_recorder.emplace(file, data_->liftNames());
 }
 
-std::span<const JoinedRoom> BuildingRun::rooms() const { return data_->joined; }
+std::span<const RunRoom> BuildingRun::rooms() const { return data_->joined; }
 
 std::optional<std::size_t> BuildingRun::roomOf(std::string_view mover) const {
     const auto found = data_->travellers.find(mover);

@@ -14,10 +14,10 @@
 #include "passage/lift.h"
 #include "scene/run/run_changes.h"
 #include "scene/run/run_reader.h"
-#include "sim/joined_worlds.h"
 #include "sim/replay.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
+#include "sim/worlds.h"
 #include "site/site_scene.h"
 
 namespace ispace {
@@ -47,7 +47,7 @@ RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building
 /// movers and of the sensors on them are those across the building, as "ground/r1", wherever they
 /// go; all other ids are plain.
 ///
-/// Trips (see JoinedWorlds) take the fastest way by stairs and lifts. Movers wait beside a landing,
+/// Trips (see Worlds) take the fastest way by stairs and lifts. Movers wait beside a landing,
 /// one queue for each lift, and enter one by one, those that leave first. A mover in a cabin stands
 /// where it leaves a way out to those that get out before it.
 ///
@@ -62,7 +62,7 @@ RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building
 ///
 /// In a replay each world follows the record of its own, and lifts follow lifts.csv. \pre then
 /// there are no trips, rides and calls
-class BuildingRun final : public JoinedWorlds {
+class BuildingRun final : public Worlds {
   public:
     static constexpr double kPersonMass = 75;
 
@@ -89,13 +89,13 @@ class BuildingRun final : public JoinedWorlds {
     /// Name of that file in a record.
     static constexpr const char* kLiftFile = "lifts.csv";
 
-    [[nodiscard]] std::span<const JoinedRoom> rooms() const override;
+    [[nodiscard]] std::span<const RunRoom> rooms() const override;
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override;
     [[nodiscard]] std::string whereText(std::size_t room) const override;
     /// A flight of stairs is at the height of the storey below it.
     [[nodiscard]] RoomFrame frameOf(std::size_t room) const override;
     [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t room) const override;
-    [[nodiscard]] std::vector<PlannedWay> plannedWays(std::size_t room) const override;
+    [[nodiscard]] std::vector<PlannedPath> plannedPaths(std::size_t room) const override;
     TripAnswer travel(const std::string& mover, TripPlan plan) override;
     TripAnswer ride(const std::string& mover, std::string_view lift,
                     std::string_view storey) override;

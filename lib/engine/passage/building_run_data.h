@@ -16,7 +16,7 @@
 #include "passage/building_run.h"
 #include "passage/cabin.h"
 #include "passage/lift_record.h"
-#include "passage/storey_ways.h"
+#include "passage/storey_paths.h"
 #include "scene/scene.h"
 #include "sim/collision.h"
 #include "site/site_sight.h"
@@ -121,7 +121,9 @@ struct BuildingRun::Data {
     void showSensors();
     void addTravellers();
     void addRoom(Room room, std::shared_ptr<const Scene> scene);
-    [[nodiscard]] const StoreyWays& waysOf(const Traveller& who) const { return ways.at(who.size); }
+    [[nodiscard]] const StoreyPaths& waysOf(const Traveller& who) const {
+        return ways.at(who.size);
+    }
     [[nodiscard]] World& worldOf(const Traveller& who) { return *rooms[who.room].world; }
     [[nodiscard]] RobotStatus statusOf(const Traveller& who) const;
     [[nodiscard]] std::optional<std::size_t> storeyNamed(std::string_view id) const;
@@ -248,14 +250,14 @@ struct BuildingRun::Data {
     std::vector<std::vector<OpenFloor>> openings;  // by storey
     std::shared_ptr<RoomsAround> around;           // views of other storeys
     std::vector<Room> rooms;  // storeys, then the cabin or the flights of each passage
-    std::vector<JoinedRoom> joined;
+    std::vector<RunRoom> joined;
     std::vector<std::size_t> first_room;             // of each passage
     std::vector<Lift> lifts;                         // by passage; unused for stairs
     std::vector<std::vector<RoomState>> told_lifts;  // their states, by passage
     SimTime told_at{};                               // when they were told
     std::vector<std::vector<Rider>> riders;          // by passage
     std::vector<std::vector<Stop>> stops;            // by passage and stop
-    std::map<MoverSize, StoreyWays> ways;
+    std::map<MoverSize, StoreyPaths> ways;
     /// Obstacles of a storey as of its last change.
     struct PresentObstacles {
         std::int64_t changes = 0;  // of the storey's world

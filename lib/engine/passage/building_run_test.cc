@@ -26,7 +26,7 @@ TEST(BuildingRun, HasAWorldForEachStoreyCabinAndFlight) {
     const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     const BuildingRun run(building, optionsOf());
     std::vector<std::string> ids;
-    for (const JoinedRoom& room : run.rooms()) ids.push_back(room.id);
+    for (const RunRoom& room : run.rooms()) ids.push_back(room.id);
     EXPECT_EQ(ids, (std::vector<std::string>{"ground", "upper", "l1", "s1"}));
     EXPECT_EQ(run.roomOf("ground/r1"), 0U);
     EXPECT_EQ(run.roomOf("r1"), std::nullopt);
@@ -55,12 +55,12 @@ TEST(BuildingRun, ARobotTakesTheLift) {
 TEST(BuildingRun, ATripTellsItsWaysOnOtherStoreys) {
     const SiteScene building = buildingOf("robot id=ground/r1 at=6,4\n");
     BuildingRun run(building, optionsOf());
-    EXPECT_TRUE(run.plannedWays(1).empty());
+    EXPECT_TRUE(run.plannedPaths(1).empty());
     ASSERT_EQ(run.travel("ground/r1", {{{1, {9, 6}}}}).refusal, "");
     step(run);
-    EXPECT_TRUE(run.plannedWays(0).empty());
-    EXPECT_TRUE(run.plannedWays(2).empty());
-    std::vector<PlannedWay> ways = run.plannedWays(1);
+    EXPECT_TRUE(run.plannedPaths(0).empty());
+    EXPECT_TRUE(run.plannedPaths(2).empty());
+    std::vector<PlannedPath> ways = run.plannedPaths(1);
     ASSERT_EQ(ways.size(), 1U);
     EXPECT_EQ(ways[0].mover, "ground/r1");
     ASSERT_GE(ways[0].points.size(), 2U);
@@ -70,14 +70,14 @@ TEST(BuildingRun, ATripTellsItsWaysOnOtherStoreys) {
     bool was_upstairs = false;
     const auto end = await(run, "ground/r1", 120, [&] {
         if (run.roomOf("ground/r1") != 1U) return;
-        ways = run.plannedWays(1);
+        ways = run.plannedPaths(1);
         was_upstairs |=
             !run.world(1).wayAhead(run.world(1).moverNamed("ground/r1").value()).empty();
     });
     ASSERT_TRUE(end);
     EXPECT_TRUE(ways.empty()) << "on its last storey";
     EXPECT_TRUE(was_upstairs);
-    EXPECT_TRUE(run.plannedWays(1).empty());
+    EXPECT_TRUE(run.plannedPaths(1).empty());
 }
 
 TEST(BuildingRun, ATripEndsWithAHeading) {

@@ -29,7 +29,7 @@ constexpr double kLeastTurn = 1e-9;
 std::optional<Route> BuildingRun::Data::routeFrom(const Traveller& who, std::size_t storey,
                                                   Point2 at, const BuildingTrip& trip,
                                                   std::size_t goal) const {
-    const StoreyWays& all = waysOf(who);
+    const StoreyPaths& all = waysOf(who);
     MoverAbility ability = who.ability;
     if (trip.plan.speed > 0) ability.speed = trip.plan.speed;
     const RoomPoint& to = trip.plan.points[goal];
@@ -251,7 +251,7 @@ void BuildingRun::Data::advanceTrip(const std::string& id, BuildingTrip& trip) {
 
 /// Sends a mover to where it waits for the next passage, or to its goal.
 void BuildingRun::Data::setOut(Traveller& who, BuildingTrip& trip) {
-    const StoreyWays& all = waysOf(who);
+    const StoreyPaths& all = waysOf(who);
     const Point2 at = statusOf(who).pose.position;
     Point2 to = trip.plan.points[trip.goal].at;
     trip.state = TripState::Walking;
@@ -368,7 +368,7 @@ const std::vector<StoreySection>& BuildingRun::Data::sectionsOf(const Traveller&
     trip.planned_goal = trip.goal;
     trip.planned_legs = trip.legs;
     trip.planned.clear();
-    const StoreyWays& all = waysOf(who);
+    const StoreyPaths& all = waysOf(who);
     for (std::size_t i = 0; i < trip.legs.size(); ++i) {
         const Leg& leg = trip.legs[i];
         const Landing& from = *all.landing(leg.passage, leg.to);
@@ -384,8 +384,8 @@ const std::vector<StoreySection>& BuildingRun::Data::sectionsOf(const Traveller&
     return trip.planned;
 }
 
-std::vector<PlannedWay> BuildingRun::plannedWays(std::size_t room) const {
-    std::vector<PlannedWay> found;
+std::vector<PlannedPath> BuildingRun::plannedPaths(std::size_t room) const {
+    std::vector<PlannedPath> found;
     const std::optional<std::size_t> storey = data_->rooms[room].storey;
     if (!storey) return found;
     for (auto& [id, trip] : data_->trips) {

@@ -8,7 +8,7 @@
 #include "env/environment.h"
 #include "env/level.h"
 #include "env/walls.h"
-#include "passage/storey_ways.h"
+#include "passage/storey_paths.h"
 #include "scene/bodies.h"
 
 namespace ispace {
@@ -76,14 +76,14 @@ double depthOf(const Environment& room, const Pose2& end, double width, double r
 /// Returns the finding of a landing, or "".
 std::string findingAt(const SiteScene& building, const StoreyLink& stairs, const Landing& landing,
                       double radius) {
-    const double deep = StoreyWays::widthToWalk(radius);
+    const double deep = StoreyPaths::widthToWalk(radius);
     const Storey& storey = building.document.storeys[landing.storey];
     const bool is_top = landing.stop + 1 == stairs.storeys.size();
     const Angle turn = Angle::degrees(is_top ? 0 : 180);
     const Pose2 ahead{is_top ? stairs.top : stairs.frame.position, stairs.frame.heading + turn};
     const Pose2 end = seenFrom(storey.building_from_storey, ahead);
     // Stairs that end in a wall have a finding of that.
-    if (!hasWayOn(building, landing.storey, ahead.position, ahead * Vec2{-1, 0})) return "";
+    if (!hasPathOn(building, landing.storey, ahead.position, ahead * Vec2{-1, 0})) return "";
     // Steps that are a body of the room come from a box around them, as of buildings in IFC, and
     // need not lead straight on.
     const Environment& room = building.scenes[landing.storey]->environment;
@@ -98,7 +98,7 @@ std::string findingAt(const SiteScene& building, const StoreyLink& stairs, const
     if (!landing.waits_in_way) return "";
     return " has a landing too narrow on " + storey.id +
            ": those that come off it cannot pass those that wait; make the way to it " +
-           lengthText(StoreyWays::widthToPass(radius)) + " m wide";
+           lengthText(StoreyPaths::widthToPass(radius)) + " m wide";
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ std::vector<Diagnostic> landingFindings(const SiteScene& building) {
                                         [](const StoreyLink& one) { return !one.is_lift; });
     if (!has_stairs) return {};
     const MoverSize size = widestClimber(building);
-    const StoreyWays ways(building, passages, size);
+    const StoreyPaths ways(building, passages, size);
     std::vector<Diagnostic> found;
     for (const Landing& landing : ways.landings()) {
         const StoreyLink& stairs = passages[landing.passage];

@@ -11,7 +11,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/zone.h"
-#include "passage/storey_ways.h"
+#include "passage/storey_paths.h"
 #include "scene/bodies.h"
 
 namespace ispace {
@@ -37,7 +37,7 @@ std::string textOf(const Box2& box) {
 /// The ways on all storeys between stops, and the shortest of them end to end.
 class TripFinder {
   public:
-    TripFinder(const SiteScene& building, const SiteCoverage& coverage, const WayChoice& of,
+    TripFinder(const SiteScene& building, const SiteCoverage& coverage, const PathChoice& of,
                int times)
         : coverage_(coverage), times_(times) {
         for (const std::string* text : {&of.from, &of.to}) {
@@ -51,7 +51,7 @@ class TripFinder {
                 stops_.push_back({landing.room, textOf(landing.floor), passages[i].id, i});
     }
 
-    [[nodiscard]] WayChoice ends() const { return {stops_[0].name, stops_[1].name}; }
+    [[nodiscard]] PathChoice ends() const { return {stops_[0].name, stops_[1].name}; }
 
     /// Dijkstra's algorithm over the stops, by the length that is seen, then by the length.
     void find(LeastSeenTrip& trip) {
@@ -85,7 +85,7 @@ class TripFinder {
         trip.whole.seen = 0;
         for (std::size_t at = 1; at != 0; at = before[at]) {
             if (stops_[at].storey != stops_[before[at]].storey) continue;
-            const LeastSeenWay& way = wayBetween(before[at], at);
+            const LeastSeenPath& way = wayBetween(before[at], at);
             trip.whole.length += way.length;
             if (!way.seen) trip.whole.seen.reset();
             if (trip.whole.seen) *trip.whole.seen += *way.seen;
@@ -101,19 +101,19 @@ class TripFinder {
         if (a.storey != b.storey)
             return a.passage && a.passage == b.passage ? std::optional(std::pair(0.0, 0.0))
                                                        : std::nullopt;
-        const LeastSeenWay& way = wayBetween(from, to);
+        const LeastSeenPath& way = wayBetween(from, to);
         if (!way.exists) return std::nullopt;
         return std::pair(way.seen.value_or(0), way.length);
     }
 
-    const LeastSeenWay& wayBetween(std::size_t from, std::size_t to) {
+    const LeastSeenPath& wayBetween(std::size_t from, std::size_t to) {
         const auto [known, is_new] = ways_.try_emplace({from, to});
         if (!is_new) return known->second;
         const std::size_t storey = stops_[from].storey;
-        LeastSeenWay& way = known->second;
+        LeastSeenPath& way = known->second;
         try {
-            way = findLeastSeenWay(*coverage_.floors[storey], coverage_.storeys[storey],
-                                   {stops_[from].zone, stops_[to].zone}, times_);
+            way = findLeastSeenPath(*coverage_.floors[storey], coverage_.storeys[storey],
+                                    {stops_[from].zone, stops_[to].zone}, times_);
         } catch (const UsageError&) {
             // A landing under a beam, say, has no floor at the height of the coverage.
             if (!stops_[from].passage && !stops_[to].passage) throw;
@@ -126,7 +126,7 @@ class TripFinder {
     const SiteCoverage& coverage_;
     int times_;
     std::vector<Stop> stops_;  // the zones come first
-    std::map<std::pair<std::size_t, std::size_t>, LeastSeenWay> ways_;
+    std::map<std::pair<std::size_t, std::size_t>, LeastSeenPath> ways_;
 };
 
 }  // namespace
@@ -159,7 +159,7 @@ std::vector<SitePassage> sitePassages(const SiteScene& building) {
     passages.reserve(links.size());
     for (const StoreyLink& link : links) passages.push_back({link.id, {}});
     if (links.empty()) return passages;
-    const StoreyWays ways(building, links, {humanRadius(kHeight), kHeight});
+    const StoreyPaths ways(building, links, {humanRadius(kHeight), kHeight});
     for (const Landing& landing : ways.landings()) {
         const Point2 at = landing.at.position;
         passages[landing.passage].landings.push_back(
@@ -170,10 +170,10 @@ std::vector<SitePassage> sitePassages(const SiteScene& building) {
 }
 
 LeastSeenTrip findLeastSeenTrip(const SiteScene& building, const SiteCoverage& coverage,
-                                const WayChoice& of, int times) {
+                                const PathChoice& of, int times) {
     if (building.isRoomAlone()) {
-        const LeastSeenWay way =
-            findLeastSeenWay(*coverage.floors.front(), coverage.storeys.front(), of, times);
+        const LeastSeenPath way =
+            findLeastSeenPath(*coverage.floors.front(), coverage.storeys.front(), of, times);
         return {way, {{0, way}}};
     }
     TripFinder finder(building, coverage, of, times);
@@ -183,11 +183,11 @@ LeastSeenTrip findLeastSeenTrip(const SiteScene& building, const SiteCoverage& c
 }
 
 SiteObjectives measureObjectives(const SiteScene& building, const SiteCoverage& coverage,
-                                 std::span<const WayChoice> ways, int times,
+                                 std::span<const PathChoice> ways, int times,
                                  std::optional<double> localise_to) {
     SiteObjectives figures;
     figures.storeys.resize(coverage.storeys.size());
-    for (const WayChoice& way : ways) {
+    for (const PathChoice& way : ways) {
         LeastSeenTrip trip = findLeastSeenTrip(building, coverage, way, times);
         for (LeastSeenTrip::Part& part : trip.parts)
             figures.storeys[part.storey].ways.push_back(std::move(part.way));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "arrange/site.h"
-#include "coverage/least_seen_way.h"
+#include "coverage/least_seen_path.h"
 #include "report/objective_report.h"
 #include "site/site_coverage.h"
 #include "site/site_scene.h"
@@ -19,15 +19,15 @@ namespace ispace {
 
 /// A way over the floors of storeys, between which it takes stairs and lifts.
 struct LeastSeenTrip {
-    /// A way on one storey: from the zone or a landing to the zone or a landing. LeastSeenWay::of
+    /// A way on one storey: from the zone or a landing to the zone or a landing. LeastSeenPath::of
     /// has the ids of zones across the building, and those of stairs and lifts.
     struct Part {
         std::size_t storey = 0;
-        LeastSeenWay way;
+        LeastSeenPath way;
     };
     /// From zone to zone, with the sums over the parts; without pieces, as those are in the frames
     /// of the storeys. Its `seen` is empty if that of a part is.
-    LeastSeenWay whole;
+    LeastSeenPath whole;
     std::vector<Part> parts = {};  ///< in order; empty without a way
 };
 
@@ -36,12 +36,12 @@ struct LeastSeenTrip {
 /// enters), on stairs and in lifts, as in reports of runs; lifts stop at all their storeys.
 ///
 /// Floor counts as seen if `times` sensors see it. In a room alone, and on one storey, this is
-/// findLeastSeenWay(), or a way over other storeys that is seen less. Costs one findLeastSeenWay()
-/// for each pair of landings of a storey. \param of `ground/entrance` or a zone that only one
-/// storey has \throws UsageError for a zone that no storey or more than one has, and as
-/// findLeastSeenWay()
+/// findLeastSeenPath(), or a way over other storeys that is seen less. Costs one
+/// findLeastSeenPath() for each pair of landings of a storey. \param of `ground/entrance` or a zone
+/// that only one storey has \throws UsageError for a zone that no storey or more than one has, and
+/// as findLeastSeenPath()
 LeastSeenTrip findLeastSeenTrip(const SiteScene& building, const SiteCoverage& coverage,
-                                const WayChoice& of, int times = 1);
+                                const PathChoice& of, int times = 1);
 
 /// A zone of a storey.
 struct StoreyZone {
@@ -64,7 +64,7 @@ struct SiteObjectives {
 /// Measures the least seen ways through the building, their parts on each storey, and positions on
 /// each storey and over all. \param localise_to limit of errors, metres; empty: no positions
 SiteObjectives measureObjectives(const SiteScene& building, const SiteCoverage& coverage,
-                                 std::span<const WayChoice> ways, int times,
+                                 std::span<const PathChoice> ways, int times,
                                  std::optional<double> localise_to);
 
 }  // namespace ispace

@@ -42,7 +42,7 @@ constexpr const char* kNorth =
 constexpr const char* kWatched =
     ", {laser: {id: l, at: [3, 0.1, 0.15], heading: 22, fov: 44, range: 12}}";
 
-LeastSeenTrip tripIn(const SiteScene& building, const WayChoice& of) {
+LeastSeenTrip tripIn(const SiteScene& building, const PathChoice& of) {
     return findLeastSeenTrip(building, measureSite(building, {}), of);
 }
 
@@ -80,7 +80,8 @@ TEST(LeastSeenTrip, OfOneStoreyIsItsLeastSeenWay) {
         house(", {zone: {id: c, at: [11, 1], size: 1 x 1}}" + std::string(kWatched), "", kNorth);
     const SiteCoverage coverage = measureSite(building, {});
     const LeastSeenTrip trip = findLeastSeenTrip(building, coverage, {"a", "c"});
-    const LeastSeenWay way = findLeastSeenWay(*coverage.floors[0], coverage.storeys[0], {"a", "c"});
+    const LeastSeenPath way =
+        findLeastSeenPath(*coverage.floors[0], coverage.storeys[0], {"a", "c"});
     EXPECT_EQ(trip.whole.of.from, "g/a");
     EXPECT_EQ(trip.whole.seen, way.seen);
     EXPECT_DOUBLE_EQ(trip.whole.length, way.length);

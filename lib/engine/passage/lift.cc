@@ -22,7 +22,7 @@ double liftRide(double distance, double speed) {
     return distance / speed + speed / a;
 }
 
-double liftWay(double distance, double speed, double seconds) {
+double liftPath(double distance, double speed, double seconds) {
     const double a = Lift::kAcceleration;
     const double whole = liftRide(distance, speed);
     const double t = std::clamp(seconds, 0.0, whole);
@@ -91,7 +91,7 @@ double Lift::height(SimTime time) const {
     const double from = model_.floors[state_.stop];
     if (state_.phase != Phase::Riding) return from;
     const double way = model_.floors[state_.next] - from;
-    const double gone = liftWay(std::abs(way), model_.speed, seconds(time - state_.since));
+    const double gone = liftPath(std::abs(way), model_.speed, seconds(time - state_.since));
     return from + std::copysign(gone, way);
 }
 

@@ -86,7 +86,7 @@ class Lift {
 /// reach its speed.
 double liftRide(double distance, double speed);
 /// Returns the distance covered after a time of that ride.
-double liftWay(double distance, double speed, double seconds);
+double liftPath(double distance, double speed, double seconds);
 /// Returns the seconds in which a door of this width opens, and those in which it closes.
 double doorTime(double width);
 

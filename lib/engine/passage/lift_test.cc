@@ -30,12 +30,12 @@ TEST(Lift, RidesByTheClosedForm) {
     for (const double speed : {0.3, 1.0, 1.6, 10.0}) {
         for (const double way : {0.1, 1.0, 2.8, 30.0}) {
             const double whole = liftRide(way, speed);
-            EXPECT_DOUBLE_EQ(liftWay(way, speed, 0), 0);
-            EXPECT_DOUBLE_EQ(liftWay(way, speed, whole), way);
-            EXPECT_NEAR(liftWay(way, speed, whole / 2), way / 2, 1e-12);
+            EXPECT_DOUBLE_EQ(liftPath(way, speed, 0), 0);
+            EXPECT_DOUBLE_EQ(liftPath(way, speed, whole), way);
+            EXPECT_NEAR(liftPath(way, speed, whole / 2), way / 2, 1e-12);
             double before = 0;
             for (int i = 1; i <= 1000; ++i) {
-                const double now = liftWay(way, speed, whole * i / 1000);
+                const double now = liftPath(way, speed, whole * i / 1000);
                 EXPECT_GE(now, before);
                 EXPECT_LE(now - before, speed * whole / 1000 * (1 + 1e-9));
                 before = now;

@@ -19,7 +19,7 @@ namespace {
 constexpr double kAskAhead = 3, kMostAside = 8;
 
 /// Returns the distance of a point from a way that begins at `from`.
-double distanceToWay(Point2 p, Point2 from, const std::vector<Point2>& way) {
+double distanceToPath(Point2 p, Point2 from, const std::vector<Point2>& way) {
     double least = distance(from, p);
     for (const Point2 next : way) {
         least = std::min(least, distance(p, {from, next}));
@@ -33,7 +33,7 @@ double distanceToWay(Point2 p, Point2 from, const std::vector<Point2>& way) {
 std::vector<Point2> BuildingRun::Data::wayTo(const Traveller& who, const BuildingTrip& trip,
                                              Point2 to) const {
     const World& world = *rooms[who.room].world;
-    const WayFinder& finder = waysOf(who).finder(*rooms[who.room].storey);
+    const PathFinder& finder = waysOf(who).finder(*rooms[who.room].storey);
     const Point2 at = statusOf(who).pose.position;
     if (trip.attempts == 0) return finder.wayBetween(at, to);
     std::vector<Point2> way =
@@ -51,7 +51,7 @@ bool BuildingRun::Data::askAside(std::size_t storey, double radius, Point2 at,
         const RobotStatus status = statusOf(its);
         const double apart = radius + its.size.radius + kFlightGap;
         if (distance(status.pose.position, at) > kAskAhead ||
-            distanceToWay(status.pose.position, at, way) > apart)
+            distanceToPath(status.pose.position, at, way) > apart)
             continue;
         const auto aside = spotAside(its, at, way, apart);
         if (!aside) continue;
@@ -66,11 +66,11 @@ bool BuildingRun::Data::askAside(std::size_t storey, double radius, Point2 at,
 std::optional<Point2> BuildingRun::Data::spotAside(const Traveller& who, Point2 from,
                                                    const std::vector<Point2>& way, double apart) {
     const std::size_t storey = *rooms[who.room].storey;
-    const StoreyWays& all = waysOf(who);
-    const WayFinder& finder = all.finder(storey);
+    const StoreyPaths& all = waysOf(who);
+    const PathFinder& finder = all.finder(storey);
     const Point2 at = statusOf(who).pose.position;
     const auto suits = [&](Point2 p) {
-        if (distance(at, p) > kMostAside || distanceToWay(p, from, way) < apart) return false;
+        if (distance(at, p) > kMostAside || distanceToPath(p, from, way) < apart) return false;
         const bool is_on_landing =
             std::any_of(all.landings().begin(), all.landings().end(), [&](const Landing& landing) {
                 return landing.storey == storey &&

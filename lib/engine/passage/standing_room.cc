@@ -12,7 +12,7 @@
 #include "geom/polygon.h"
 #include "passage/building_run.h"
 #include "passage/building_run_data.h"
-#include "passage/storey_ways.h"
+#include "passage/storey_paths.h"
 #include "sim/collision.h"
 #include "site/site_sight.h"
 

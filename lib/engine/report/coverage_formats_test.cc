@@ -134,7 +134,7 @@ TEST(CoverageGeoJson, HasTheFloorOfEachClass) {
 
 TEST(CoverageRosMap, TellsSeenUnseenAndOccupiedApart) {
     const Scene scene = sceneOf(kHalfSeen);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, {.cells = CellSize{0.05}});
     const CoverageFiles map = coverageRosMap(coverage, 0.05, "plan.pgm");
     EXPECT_EQ(map.product,

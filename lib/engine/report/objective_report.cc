@@ -18,7 +18,7 @@ std::string errorText(const std::optional<double>& error) {
                       : formatFixed(*error, 3) + " m";
 }
 
-NamedFigure named(const LeastSeenWay& way) {
+NamedFigure named(const LeastSeenPath& way) {
     NamedFigure figure{"way from " + printable(way.of.from) + " to " + printable(way.of.to), ""};
     if (!way.exists)
         figure.finding = "none over free floor";
@@ -58,7 +58,7 @@ void writeFigure(JsonWriter& json, const char* key, const std::optional<double>&
 
 std::vector<NamedFigure> namedFigures(const ObjectiveFigures& figures) {
     std::vector<NamedFigure> all;
-    for (const LeastSeenWay& way : figures.ways) all.push_back(named(way));
+    for (const LeastSeenPath& way : figures.ways) all.push_back(named(way));
     if (figures.localisation) all.push_back(named(*figures.localisation));
     return all;
 }
@@ -66,7 +66,7 @@ std::vector<NamedFigure> namedFigures(const ObjectiveFigures& figures) {
 void writeObjectives(JsonWriter& json, const ObjectiveFigures& figures) {
     if (!figures.ways.empty()) {
         json.key("paths").beginArray();
-        for (const LeastSeenWay& way : figures.ways) {
+        for (const LeastSeenPath& way : figures.ways) {
             json.beginObject();
             json.key("from").value(way.of.from);
             json.key("to").value(way.of.to);
@@ -74,7 +74,7 @@ void writeObjectives(JsonWriter& json, const ObjectiveFigures& figures) {
             writeFigure(json, "seen", way.seen);
             writeFigure(json, "length", way.seen ? std::optional(way.length) : std::nullopt);
             json.key("pieces").beginArray();
-            for (const LeastSeenWay::Piece& piece : way.pieces) {
+            for (const LeastSeenPath::Piece& piece : way.pieces) {
                 json.beginObject();
                 for (const auto& [key, at] : {std::pair("from", piece.from), {"to", piece.to}})
                     json.key(key).value(

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "base/json_writer.h"
-#include "coverage/least_seen_way.h"
+#include "coverage/least_seen_path.h"
 #include "coverage/localisation.h"
 
 namespace ispace {
 
 /// Results of --path and --localise.
 struct ObjectiveFigures {
-    std::vector<LeastSeenWay> ways;
+    std::vector<LeastSeenPath> ways;
     std::optional<Localisation> localisation;
 };
 

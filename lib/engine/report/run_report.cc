@@ -226,7 +226,7 @@ void drawRun(Picture& picture, const MapPicture& map) {
     if (run == nullptr) return;
     std::array<std::vector<std::vector<Point2>>, kRunColors.size()> chains;
     const double tolerance = 0.2 / map.view.scale;
-    for (const SeenWay& way : run->ways)
+    for (const SeenPath& way : run->ways)
         if (way.points.size() > 1)
             chains[classOf(way.sensors)].push_back(thinned(way.points, tolerance));
     picture.pushView(map.view);

@@ -270,7 +270,7 @@ bool namesOtherRoom(std::string_view word) {
 
 }  // namespace
 
-RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_view> words) {
+RoomRequest roomRequest(const Worlds& worlds, std::span<const std::string_view> words) {
     if (!worlds.areCoupled())
         return {.room = 0,
                 .id = words.size() > 1 ? std::string(words[1]) : "",
@@ -294,7 +294,7 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
     std::optional<std::size_t> found;
     for (std::size_t i = 0; i < words.size(); ++i) {
         std::string word(words[i]);
-        for (const JoinedRoom& room : rooms)
+        for (const RunRoom& room : rooms)
             if (mountsOn(room.simulation->world(), word))
                 return fail(403, "robots and people of a building keep their sensors");
         if (const std::size_t at = idIn(verb, i, word); at != std::string::npos) {
@@ -316,7 +316,7 @@ RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_
                 namesOtherRoom(word))
                 return fail(400, "an id is that of its storey and one in it, as in " +
                                      rooms.front().id + "/desk1");
-            for (const JoinedRoom& other : rooms) {
+            for (const RunRoom& other : rooms) {
                 const World& world = other.simulation->world();
                 const bool is_mover = world.moverNamed(whole).has_value();
                 if (is_mover && verb == "SET" && words.size() > 2)
@@ -372,17 +372,18 @@ void changeRooms(const ServedRooms& rooms, const std::function<void()>& change) 
     rooms.states.front()->changes().spend(began, std::chrono::steady_clock::now());
 }
 
-std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
-                                                      const std::string& verb) {
+std::shared_ptr<const ServerState::PendingReply> changeWorld(ServerState& state,
+                                                             const std::string& line,
+                                                             const std::string& verb) {
     return changeWorld(state, std::vector<std::string>{line}, verb);
 }
 
-std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state,
-                                                      std::vector<std::string> lines,
-                                                      const std::string& verb,
-                                                      const std::string& room) {
+std::shared_ptr<const ServerState::PendingReply> changeWorld(ServerState& state,
+                                                             std::vector<std::string> lines,
+                                                             const std::string& verb,
+                                                             const std::string& room) {
     const auto changing = std::make_shared<Changing>(state, std::move(lines), verb, room);
-    const auto asked = std::make_shared<ServerState::Asked>();
+    const auto asked = std::make_shared<ServerState::PendingReply>();
     const auto end = [changing, asked](const std::exception_ptr& failure) {
         asked->bytes = std::make_shared<const std::string>(changing->end(failure));
         asked->is_error = asked->bytes->starts_with("ERR");

@@ -24,22 +24,23 @@ struct RoomRequest {
 
 /// Finds the room of a request ADD, SET, DELETE or ACT, and takes it off the ids; of a sole world,
 /// that of any request.
-RoomRequest roomRequest(const JoinedWorlds& worlds, std::span<const std::string_view> words);
+RoomRequest roomRequest(const Worlds& worlds, std::span<const std::string_view> words);
 
 /// Carries out a request ADD, SET, DELETE, LOAD or RESET. \returns the answer, completed once the
 /// world has changed; it begins with `verb`, if not empty, instead of the request's.
 /// \pre state.mayChange(), state.mayChangeNow()
-std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state, const std::string& line,
-                                                      const std::string& verb = "");
+std::shared_ptr<const ServerState::PendingReply> changeWorld(ServerState& state,
+                                                             const std::string& line,
+                                                             const std::string& verb = "");
 
 /// Carries out several requests ADD, or several SET, by one change of the world, which is built
 /// once. \returns the answers to all of them, as one by one; none is carried out, and `is_error` is
 /// set, if one fails, or might without those that follow it: each SET is about another sensor, by
 /// its id, and refers to no record. \param room of ids in the answer \pre as above
-std::shared_ptr<const ServerState::Asked> changeWorld(ServerState& state,
-                                                      std::vector<std::string> lines,
-                                                      const std::string& verb = "",
-                                                      const std::string& room = "");
+std::shared_ptr<const ServerState::PendingReply> changeWorld(ServerState& state,
+                                                             std::vector<std::string> lines,
+                                                             const std::string& verb = "",
+                                                             const std::string& room = "");
 
 /// Changes the rooms of a building together, between two steps. \pre all states mayChangeNow()
 void changeRooms(const ServedRooms& rooms, const std::function<void()>& change);

@@ -12,13 +12,10 @@
 #include <vector>
 
 #include "scene/room_state.h"
-#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
+#include "sim/worlds.h"
 
 namespace ispace {
-
-/// A world of the run, with its name among others ("" of the only one).
-using RunRoom = JoinedRoom;
 
 /// A request of a role, as a row for HELP.
 struct RoleRequest {

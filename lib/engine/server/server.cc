@@ -17,7 +17,7 @@
 namespace ispace {
 
 Server::Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits,
-               JoinedWorlds* joined)
+               Worlds* joined)
     : data_(std::make_unique<Data>(simulation, endpoint, limits, joined)) {}
 
 Server::~Server() = default;

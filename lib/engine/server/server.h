@@ -16,9 +16,9 @@
 #include "base/file.h"
 #include "server/client_role.h"
 #include "server/network.h"
-#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 #include "sim/world_editor.h"
+#include "sim/worlds.h"
 
 namespace ispace {
 
@@ -84,7 +84,7 @@ class Server {
     /// Starts listening. \param joined serves these worlds, which the simulation leads; may be null
     /// \throws std::system_error naming the endpoint
     Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits = {},
-           JoinedWorlds* joined = nullptr);
+           Worlds* joined = nullptr);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

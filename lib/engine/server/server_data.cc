@@ -29,10 +29,10 @@ constexpr auto kLastFlush = std::chrono::milliseconds(500);
 
 }  // namespace
 
-void Server::Data::join(JoinedWorlds& joined) {
+void Server::Data::join(Worlds& joined) {
     rooms.worlds = &joined;
     rooms.states.push_back(&state);
-    for (const JoinedRoom& room : joined.rooms().subspan(1))
+    for (const RunRoom& room : joined.rooms().subspan(1))
         rooms.states.push_back(&others.emplace_back(*room.simulation, limits));
     for (ServerState* const each : rooms.states) each->joinRooms(rooms);
     joined.onMove([this](const std::string& mover, std::size_t from, std::size_t to) {

@@ -27,7 +27,7 @@ namespace ispace {
 
 struct Server::Data {
     Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits,
-         JoinedWorlds* joined)
+         Worlds* joined)
         : simulation(the_simulation),
           limits(the_limits),
           state(the_simulation, the_limits),
@@ -43,7 +43,7 @@ struct Server::Data {
         closeAll();
     }
 
-    void join(JoinedWorlds& joined);
+    void join(Worlds& joined);
     /// Returns the states of all worlds.
     [[nodiscard]] const std::vector<ServerState*>& states() const { return state.rooms().states; }
     bool collect();

@@ -195,7 +195,7 @@ bool ServerState::mayHold() const {
 
 std::vector<ServerState::ServedWorld> ServerState::worlds() const {
     std::vector<ServedWorld> worlds;
-    for (const JoinedRoom& room : rooms_->worlds->rooms())
+    for (const RunRoom& room : rooms_->worlds->rooms())
         worlds.push_back({room.id, &room.simulation->world()});
     return worlds;
 }
@@ -214,7 +214,7 @@ std::vector<RoomState> ServerState::statesOfAll() const {
     return states;
 }
 
-ServerState::ServedThing ServerState::find(std::string_view name) {
+ServerState::ServedEntity ServerState::find(std::string_view name) {
     const auto has = [](ServerState& each, std::string_view id) {
         const World& world = each.simulation().world();
         return world.moverNamed(id) || world.sensorNamed(id);
@@ -249,29 +249,30 @@ bool ServerState::holdsWorld() const {
 }
 
 void ServerState::runInBackground(BackgroundWorker::Job job) {
-    if (workshop_)
-        workshop_->give(std::move(job));
+    if (capture_worker_)
+        capture_worker_->give(std::move(job));
     else
         BackgroundWorker::doNow(std::move(job));
 }
 
 bool ServerState::collect() {
-    const bool has_made = workshop_ && workshop_->collect();
-    const bool has_built = builders_ && builders_->collect();
+    const bool has_made = capture_worker_ && capture_worker_->collect();
+    const bool has_built = change_worker_ && change_worker_->collect();
     return goOnSeeking() || has_built || has_made;
 }
 
 /// Runs a job in the builder thread, if there is one.
 void ServerState::build(BackgroundWorker::Job job) {
-    if (builders_)
-        builders_->give(std::move(job));
+    if (change_worker_)
+        change_worker_->give(std::move(job));
     else
         BackgroundWorker::doNow(std::move(job));
 }
 
 /// Destroys a world in the background, since that takes long, too.
 void ServerState::endLater(std::shared_ptr<const void> old) {
-    if (builders_ && old) builders_->give({[old = std::move(old)] {}, [](const auto&) {}});
+    if (change_worker_ && old)
+        change_worker_->give({[old = std::move(old)] {}, [](const auto&) {}});
 }
 
 std::shared_ptr<const Seek> ServerState::seek(SimTime to) {
@@ -325,8 +326,8 @@ bool ServerState::prepare(std::optional<SimTime> to) {
 bool ServerState::await() {
     // Interval for checking whether waiting should end.
     constexpr auto kSlice = std::chrono::milliseconds(20);
-    if (!workshop_ || (stopped_ && stopped_())) return false;
-    workshop_->collectWithin(kSlice);
+    if (!capture_worker_ || (stopped_ && stopped_())) return false;
+    capture_worker_->collectWithin(kSlice);
     return true;
 }
 
@@ -368,33 +369,33 @@ void ServerState::adopt(WorldChange change, std::exception_ptr failure, WallTime
         std::move(change), std::move(old)));
 }
 
-std::shared_ptr<const ServerState::Asked> ServerState::ask(std::size_t sensor,
-                                                           const ReplyForm& form) {
+std::shared_ptr<const ServerState::PendingReply> ServerState::ask(std::size_t sensor,
+                                                                  const ReplyForm& form) {
     World& world = simulation_->world();
-    const bool may_wait = workshop_ && isHeavy(world.sensors()[sensor]);
+    const bool may_wait = capture_worker_ && isHeavy(world.sensors()[sensor]);
     const std::int64_t seq = world.period(sensor);
     const bool is_taken = world.isCaptured(sensor);
     const Text& text = textOf(sensor, form);
     if (!may_wait || (is_taken && text.seq == seq && text.bytes))
-        return std::make_shared<const Asked>(Asked{scan(sensor, form)});
-    Making making{sensor, world.changes(), seq, form, std::make_shared<Asked>(), nullptr, 0};
-    for (const Making& other : makings_)
+        return std::make_shared<const PendingReply>(PendingReply{scan(sensor, form)});
+    Making making{sensor, world.changes(), seq, form, std::make_shared<PendingReply>(), nullptr, 0};
+    for (const Making& other : pending_)
         if (other.sensor == sensor && other.changes == making.changes && other.seq == seq &&
             other.form == form)
             return other.asked;
     if (auto refused = refusal(sensor)) return refused;
-    auto take = beginMaking(making);
+    auto take = startReading(making);
     make(making, std::move(take));
     return making.asked;
 }
 
 /// Returns an error if too many pictures are pending, else null.
-std::shared_ptr<const ServerState::Asked> ServerState::refusal(std::size_t sensor) const {
+std::shared_ptr<const ServerState::PendingReply> ServerState::refusal(std::size_t sensor) const {
     const auto sensors = simulation_->world().sensors();
     double pixels = pixelsOf(sensors[sensor]);
-    for (const Making& making : makings_) pixels += making.pixels;
-    if (makings_.empty() || pixels <= kMaxWaitingPixels) return nullptr;
-    return std::make_shared<const Asked>(Asked{
+    for (const Making& making : pending_) pixels += making.pixels;
+    if (pending_.empty() || pixels <= kMaxWaitingPixels) return nullptr;
+    return std::make_shared<const PendingReply>(PendingReply{
         counted(errorLine(
             409, {"pictures of ", formatFixed(pixels, 0), " pixels would wait to be made, at most ",
                   formatFixed(kMaxWaitingPixels, 0), " may: ask again later"})),
@@ -403,17 +404,21 @@ std::shared_ptr<const ServerState::Asked> ServerState::refusal(std::size_t senso
 
 void ServerState::takeFrame(FrameJob job) {
     World& world = simulation_->world();
-    Making making{job.sensor, world.changes(),           world.period(job.sensor),
-                  {},         std::make_shared<Asked>(), nullptr,
+    Making making{job.sensor,
+                  world.changes(),
+                  world.period(job.sensor),
+                  {},
+                  std::make_shared<PendingReply>(),
+                  nullptr,
                   0};
-    auto take = beginMaking(making);
+    auto take = startReading(making);
     make(making, std::move(take), std::move(job));
 }
 
 /// Looks up the reading. \returns a function that captures it if there is none
-std::function<SensorReading()> ServerState::beginMaking(Making& making) {
+std::function<SensorReading()> ServerState::startReading(Making& making) {
     World& world = simulation_->world();
-    for (const Making& other : makings_)
+    for (const Making& other : pending_)
         if (other.sensor == making.sensor && other.changes == making.changes &&
             other.seq == making.seq)
             making.reading = other.reading;
@@ -425,7 +430,7 @@ std::function<SensorReading()> ServerState::beginMaking(Making& making) {
         take = world.captureLater(making.sensor);
     }
     making.pixels = pixelsOf(world.sensors()[making.sensor]);
-    makings_.push_back(making);
+    pending_.push_back(making);
     return take;
 }
 
@@ -443,7 +448,7 @@ void ServerState::make(const Making& making, std::function<SensorReading()> take
          },
          [this, making, text, takes,
           deliver = std::move(frame.deliver)](const std::exception_ptr& failure) {
-             std::erase_if(makings_,
+             std::erase_if(pending_,
                            [&](const Making& other) { return other.asked == making.asked; });
              const bool is_same = making.changes == simulation_->world().changes();
              if (!failure && takes && is_same)

@@ -20,11 +20,11 @@
 #include "server/role_answer.h"
 #include "server/server.h"
 #include "server/session_sensors.h"
-#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
 #include "sim/sole_world.h"
 #include "sim/world.h"
 #include "sim/world_editor.h"
+#include "sim/worlds.h"
 
 namespace ispace {
 
@@ -173,7 +173,7 @@ class ServerState;
 
 /// The worlds of a run, one or more, and the state of each, in the order of their rooms.
 struct ServedRooms {
-    JoinedWorlds* worlds = nullptr;
+    Worlds* worlds = nullptr;
     std::vector<ServerState*> states;
 };
 
@@ -202,14 +202,14 @@ class ServerState {
     };
     [[nodiscard]] std::vector<ServedWorld> worlds() const;
     /// A robot, person or sensor, by its id in the world of a state.
-    struct ServedThing {
+    struct ServedEntity {
         ServerState* state = nullptr;
         std::string_view id;
         bool is_known = true;
     };
     /// Finds the world of a thing by its name across the worlds, such as "ground/r1". The only
     /// room has all names; among several a thing that is in none stays here, unknown.
-    [[nodiscard]] ServedThing find(std::string_view name);
+    [[nodiscard]] ServedEntity find(std::string_view name);
     /// Returns the states of all worlds, with the names of things across them, then of lifts.
     [[nodiscard]] std::vector<RoomState> statesOfAll() const;
 
@@ -263,13 +263,13 @@ class ServerState {
     /// a heavy sensor. All readers share one string. \throws FormatError as scanText does
     std::shared_ptr<const std::string> scan(std::size_t sensor, const ReplyForm& form);
     /// A requested text.
-    struct Asked {
+    struct PendingReply {
         std::shared_ptr<const std::string> bytes;  ///< null until it is computed
         bool is_error = false;                     ///< `bytes` is an ERR line
     };
     /// Asynchronous scan(): after startBackground(), a heavy sensor is computed in a background
     /// thread from the current world. Rejected if too many requests are pending.
-    std::shared_ptr<const Asked> ask(std::size_t sensor, const ReplyForm& form);
+    std::shared_ptr<const PendingReply> ask(std::size_t sensor, const ReplyForm& form);
     /// Computes a frame for a record in the same way; requests by ask() for that frame share it.
     void takeFrame(FrameJob job);
     /// Runs a job, in a background thread after startBackground(); collect() then delivers it.
@@ -277,13 +277,13 @@ class ServerState {
     /// Enables background threads for slow jobs. They call `wake` when a result is ready for
     /// collect(). \param stopped returns true once results are no longer awaited
     void startBackground(const std::function<void()>& wake, std::function<bool()> stopped) {
-        workshop_.emplace(wake);
-        builders_.emplace(wake);
+        capture_worker_.emplace(wake);
+        change_worker_.emplace(wake);
         stopped_ = std::move(stopped);
     }
     void stopBackground() {
-        workshop_.reset();
-        builders_.reset();
+        capture_worker_.reset();
+        change_worker_.reset();
     }
     /// True if no picture, change or seek of the current world is under way.
     [[nodiscard]] bool isAtRest() const { return !isMaking() && !is_changing_ && !seek_; }
@@ -302,9 +302,11 @@ class ServerState {
     /// completing any, once they are no longer awaited
     bool await();
     /// True while pictures, maps and meshes are computed.
-    [[nodiscard]] bool isMaking() const { return workshop_ && workshop_->open() > 0; }
+    [[nodiscard]] bool isMaking() const { return capture_worker_ && capture_worker_->open() > 0; }
     /// True if a background thread has a job running or queued.
-    [[nodiscard]] bool isBusy() const { return isMaking() || (builders_ && builders_->open() > 0); }
+    [[nodiscard]] bool isBusy() const {
+        return isMaking() || (change_worker_ && change_worker_->open() > 0);
+    }
     /// What slow readers of this world's data have lost.
     [[nodiscard]] ReaderLosses& losses() { return losses_; }
     [[nodiscard]] TopicEchoes& echoes() { return echoes_; }
@@ -323,15 +325,15 @@ class ServerState {
         std::int64_t changes;  // change count of the world
         std::int64_t seq;
         std::optional<ReplyForm> form;  // empty: a frame for the record
-        std::shared_ptr<Asked> asked;
+        std::shared_ptr<PendingReply> asked;
         std::shared_ptr<SensorReading> reading;  // set once the first job of this sensor is done
         double pixels = 0;
     };
     [[nodiscard]] std::shared_ptr<const std::string> counted(std::string text) const;
     [[nodiscard]] Text& textOf(std::size_t sensor, const ReplyForm& form);
     void keep(Text& text, std::int64_t seq, std::shared_ptr<const std::string> bytes);
-    [[nodiscard]] std::shared_ptr<const Asked> refusal(std::size_t sensor) const;
-    std::function<SensorReading()> beginMaking(Making& making);
+    [[nodiscard]] std::shared_ptr<const PendingReply> refusal(std::size_t sensor) const;
+    std::function<SensorReading()> startReading(Making& making);
     void make(const Making& making, std::function<SensorReading()> take, FrameJob frame = {});
     bool prepare(std::optional<SimTime> to);
     bool goOnSeeking();
@@ -359,13 +361,13 @@ class ServerState {
     std::size_t kept_ = 0;                  // bytes in texts_
     // Bytes of all texts still referenced; shared, since texts may outlive the state.
     std::shared_ptr<std::size_t> alive_ = std::make_shared<std::size_t>(0);
-    std::vector<Making> makings_;
+    std::vector<Making> pending_;
     bool is_changing_ = false;
-    std::shared_ptr<const Asked> scripted_;  // the change of the script under way
-    std::shared_ptr<Seek> seek_;             // null: no seek under way
+    std::shared_ptr<const PendingReply> scripted_;  // the change of the script under way
+    std::shared_ptr<Seek> seek_;                    // null: no seek under way
     std::function<bool()> stopped_;
     // Declared last, since their jobs use the other members: pictures, and changes of the world.
-    std::optional<BackgroundWorker> workshop_, builders_;
+    std::optional<BackgroundWorker> capture_worker_, change_worker_;
     TopicEchoes echoes_;
     ReaderLosses losses_;
 };

@@ -131,7 +131,7 @@ class Session {
 
     [[nodiscard]] World& world() const { return state_->simulation().world(); }
     [[nodiscard]] const ServedRooms& rooms() const { return state_->rooms(); }
-    [[nodiscard]] JoinedWorlds& worlds() const { return *rooms().worlds; }
+    [[nodiscard]] Worlds& worlds() const { return *rooms().worlds; }
     /// Goes to the world of a robot, person or sensor. \returns its id there
     std::string_view enter(std::string_view id);
     /// Calls visit(EventLog&) for that of each world.
@@ -173,7 +173,7 @@ class Session {
     [[nodiscard]] bool sendsPendingScan(Words words);
     void sendReading(std::size_t sensor, const ReplyForm& form);
     void receiveAsked();
-    void receiveChange(const ServerState::Asked& change);
+    void receiveChange(const ServerState::PendingReply& change);
     void abandonRequests();
 
     void token(Words words);
@@ -255,7 +255,7 @@ class Session {
     bool is_stale_ = false;  // a newer scan than the one to be sent exists
     std::shared_ptr<const std::string> scan_;
     // Pending results: the answer of a reading or a change, and a reading of the stream.
-    std::shared_ptr<const ServerState::Asked> wanted_, coming_;
+    std::shared_ptr<const ServerState::PendingReply> wanted_, coming_;
     std::shared_ptr<const StepQueue::Ticket> steps_;  // of a pending STEP
     std::shared_ptr<const Seek> seek_;                // of a pending SEEK
     // A deferred request, answered once this condition holds.

@@ -115,7 +115,7 @@ std::vector<std::string> Session::withJoined(const RoomRequest& first, Words wor
 
 /// Takes the answers. Requests whose common change fails are carried out one after another, then
 /// more at a time again.
-void Session::receiveChange(const ServerState::Asked& change) {
+void Session::receiveChange(const ServerState::PendingReply& change) {
     const std::vector<std::string> joined = std::exchange(joined_, {});
     joins_ = change.is_error ? 1 : std::min(2 * joins_, kMostJoined);
     if (joined.empty() || !change.is_error)

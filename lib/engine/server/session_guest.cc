@@ -150,7 +150,7 @@ void Session::track(Words words) {
                      {excerpt(words[1]), " is no name of a track: letters, digits and _-./+:@"});
     std::string_view place = words[2];
     const auto all = worlds().rooms();
-    const auto room = std::find_if(all.begin(), all.end(), [place](const JoinedRoom& each) {
+    const auto room = std::find_if(all.begin(), all.end(), [place](const RunRoom& each) {
         return place.starts_with(prefixOf(each.id));
     });
     if (room == all.end())

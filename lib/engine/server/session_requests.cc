@@ -108,7 +108,7 @@ void Session::command(Words words) {
     const std::string busy = worlds().endTrip(id_, stops ? Outcome::Stopped : Outcome::Replaced);
     if (!busy.empty()) return error(409, {busy});
     if (parsed.command->verb == Verb::Goto)
-        if (const std::string none = world().findWay(subject_, *parsed.command); !none.empty())
+        if (const std::string none = world().findPath(subject_, *parsed.command); !none.empty())
             return error(409, {none});
     double value = parsed.command->value;
     if (parsed.command->verb == Verb::Path)  // the whole path, from here
@@ -176,7 +176,7 @@ void Session::list(Words /*words*/) {
     out_.append(" people=").append(joined(idsOfAll(Role::Person), ","));
     out_.append(" sensors=").append(joined(idsOfAll(Role::Sensor), ","));
     std::vector<std::string> ids;
-    for (const JoinedRoom& room : worlds().rooms()) ids.push_back(room.id);
+    for (const RunRoom& room : worlds().rooms()) ids.push_back(room.id);
     if (const std::string names = joined(ids, ","); !names.empty())
         out_.append(" rooms=").append(names);
     out_ += '\n';
@@ -199,8 +199,8 @@ void Session::states(Words words) {
 void Session::records(Words words) {
     const auto all = worlds().rooms();
     const std::string_view name = words.size() > 1 ? words[1] : std::string_view();
-    const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const JoinedRoom& room) { return room.id == name; });
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const RunRoom& room) { return room.id == name; });
     if (found == all.end() && all.front().id.empty())
         return error(400, {"this run is of one room: RECORDS has no argument"});
     if (found == all.end())

@@ -16,7 +16,7 @@
 #include "scene/thing_kind.h"
 #include "server/change_request.h"
 #include "server/session.h"
-#include "sim/joined_worlds.h"
+#include "sim/worlds.h"
 
 namespace ispace {
 
@@ -72,7 +72,7 @@ std::size_t Session::room() const {
 void Session::poses(Words /*words*/) {
     std::string robots, people, rooms_of_robots, rooms_of_people;
     std::size_t count = 0;
-    for (const JoinedRoom& room : worlds().rooms()) {
+    for (const RunRoom& room : worlds().rooms()) {
         const World& one = room.simulation->world();
         for (std::size_t i = 0; i < one.movers().size(); ++i) {
             const bool is_robot = i < one.robots().size();
@@ -108,7 +108,7 @@ struct PlaceRequest {
     bool is_point = false;
 };
 
-std::optional<PlaceRequest> placeRequest(const JoinedWorlds& worlds,
+std::optional<PlaceRequest> placeRequest(const Worlds& worlds,
                                          std::span<const std::string_view> words) {
     if (words.size() != 2 || words[0] != "SET") return std::nullopt;
     const std::string_view word = words[1];
@@ -138,7 +138,7 @@ std::string faultOf(const Scene& scene, const std::string& mover, std::string_vi
 
 /// Puts a robot or a person elsewhere. \returns false for other requests
 bool Session::placeMover(Words words) {
-    JoinedWorlds& worlds = this->worlds();
+    Worlds& worlds = this->worlds();
     const auto request = placeRequest(worlds, words);
     if (!request) return false;
     const auto fail = [this](int code, const std::string& text) {
@@ -188,14 +188,14 @@ bool Session::placeMover(Words words) {
 bool Session::changeBody(Words words) {
     const bool sets = words[0] == "SET" && words.size() == 2;
     if (!sets && (words[0] != "ACT" || words.size() < 3)) return false;
-    const JoinedWorlds& worlds = this->worlds();
+    const Worlds& worlds = this->worlds();
     const std::string_view left = words[1].substr(0, words[1].find('='));
     const std::size_t dot = sets ? left.rfind('.') : left.size();
     if (dot == std::string_view::npos) return false;
     const std::string id(left.substr(0, dot));
     const auto room = worlds.roomOf(id);
     if (!room) return false;
-    const JoinedRoom& in = worlds.rooms()[*room];
+    const RunRoom& in = worlds.rooms()[*room];
     const Scene& scene = in.simulation->world().scene();
     const auto own = std::find(scene.ids.begin(), scene.ids.end(), id) - scene.ids.begin();
     const std::string& keyword = scene.records[static_cast<std::size_t>(own)].keyword();

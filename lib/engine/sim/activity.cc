@@ -411,7 +411,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
         }
         if (!doer.walks && !was_there && !doer.gave_up) {
             const PersonVerb* const does = actionOf(doer).does;
-            doer.walks = does != nullptr && does->way == PersonVerb::Way::Beside &&
+            doer.walks = does != nullptr && does->approach == PersonVerb::Approach::Beside &&
                          does->aim != nullptr && face(world, *mover, doer);
             if (!doer.walks && !doer.gave_up) beginUse(simulation, doer);
         }
@@ -504,7 +504,7 @@ bool ActivityDirector::beginWithBody(Simulation& simulation, Doer& doer) const {
         refuse(simulation, doer, reason);
         return true;
     }
-    doer.walks = does == nullptr || does->way != PersonVerb::Way::None;
+    doer.walks = does == nullptr || does->approach != PersonVerb::Approach::None;
     if (doer.walks) return true;
     stay(world, mover, doer);
     beginDeed(simulation, doer);
@@ -611,32 +611,32 @@ bool ActivityDirector::goOnWalking(World& world, std::size_t mover, Doer& doer) 
 }
 
 /// Returns the ways of people of a height, as if these shut doors of the world were open.
-std::shared_ptr<const GoalWays> ActivityDirector::waysThrough(const World& world, double height,
-                                                              std::span<const ShutDoor> doors) {
-    constexpr std::size_t kMaxWays = 64;  // bounds memory
+std::shared_ptr<const GoalPaths> ActivityDirector::waysThrough(const World& world, double height,
+                                                               std::span<const ShutDoor> doors) {
+    constexpr std::size_t kMaxPaths = 64;  // bounds memory
     std::pair<double, std::string> key{height, ""};
     for (const ShutDoor& door : doors) key.second.append(door.id).append(1, '\n');
-    if (ways_.size() >= kMaxWays && !ways_.contains(key))
+    if (ways_.size() >= kMaxPaths && !ways_.contains(key))
         ways_.erase(std::min_element(ways_.begin(), ways_.end(), [](const auto& a, const auto& b) {
             return a.second.last_use < b.second.last_use;
         }));
     auto& [ways, last_use] = ways_[key];
     last_use = ++ways_uses_;
     if (!ways)
-        ways = std::make_shared<const GoalWays>(world.scene(), withOpen(world.scene(), doors),
-                                                humanRadius(height), height);
+        ways = std::make_shared<const GoalPaths>(world.scene(), withOpen(world.scene(), doors),
+                                                 humanRadius(height), height);
     return ways;
 }
 
 /// Returns the ways of a person: doors that are low for one are high enough for another, and doors
 /// that are shut for one open for another.
-ActivityDirector::Ways ActivityDirector::waysOf(const World& world, std::size_t mover) {
+ActivityDirector::Paths ActivityDirector::waysOf(const World& world, std::size_t mover) {
     if (std::exchange(ways_of_, world.changes()) != world.changes()) {
         ways_.clear();
         shut_doors_ = shutDoorsOf(world.scene());
     }
     const PlacedPerson& person = world.people()[mover - world.robots().size()];
-    Ways found;
+    Paths found;
     if (!shut_doors_.empty()) {
         const Record* const record = recordNamed(world.scene(), person.id);
         for (const ShutDoor& door : shut_doors_)
@@ -648,9 +648,9 @@ ActivityDirector::Ways ActivityDirector::waysOf(const World& world, std::size_t 
 }
 
 /// Returns the spots where other movers stand or to which a plan sends them.
-std::vector<GoalWays::Spot> ActivityDirector::spotsOfOthers(const World& world,
-                                                            std::size_t mover) const {
-    std::vector<GoalWays::Spot> spots;
+std::vector<GoalPaths::Spot> ActivityDirector::spotsOfOthers(const World& world,
+                                                             std::size_t mover) const {
+    std::vector<GoalPaths::Spot> spots;
     for (std::size_t i = 0; i < world.movers().size(); ++i) {
         if (i == mover) continue;
         const double radius = world.movers()[i].model.radius;
@@ -779,10 +779,10 @@ void ActivityDirector::closeDoors(Simulation& simulation) {
 bool ActivityDirector::depart(Simulation& simulation, std::size_t mover, Doer& doer) {
     const DayAction& action = actionOf(doer);
     World& world = simulation.world();
-    if (action.does != nullptr && action.does->way == PersonVerb::Way::Faces)
+    if (action.does != nullptr && action.does->approach == PersonVerb::Approach::Faces)
         return face(world, mover, doer);
-    const Ways of_person = waysOf(world, mover);
-    const GoalWays& ways = *of_person.goals;
+    const Paths of_person = waysOf(world, mover);
+    const GoalPaths& ways = *of_person.goals;
     const Point2 from = world.status(mover).pose.position;
     if (doer.tries++ >= kMaxTries) {
         // A crowd may leave no point of a zone free, or of the floor beside a thing: a person that
@@ -856,7 +856,7 @@ void ActivityDirector::arrive(World& world, std::size_t mover, Doer& doer) {
 
 bool ActivityDirector::isThere(const World& world, std::size_t mover, const Doer& doer) {
     const PersonVerb* const does = actionOf(doer).does;
-    if (does != nullptr && does->way == PersonVerb::Way::Faces) return true;
+    if (does != nullptr && does->approach == PersonVerb::Approach::Faces) return true;
     return waysOf(world, mover)
         .goals->isAt(world.status(mover).pose.position, actionOf(doer).target);
 }

@@ -15,7 +15,7 @@
 #include "geom/pose.h"
 #include "geom/predicates.h"
 #include "sim/command.h"
-#include "sim/goal_ways.h"
+#include "sim/goal_paths.h"
 #include "sim/shut_doors.h"
 #include "sim/sim_time.h"
 
@@ -76,7 +76,7 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 
 /// Makes people follow their days: each does the activities of a plan one after another, each at
 /// its time or once those before it are done. A person on the way finds it round walls, elements
-/// and shut doors, and ends it beside the thing, see GoalWays::isAt(); one that is blocked tries
+/// and shut doors, and ends it beside the thing, see GoalPaths::isAt(); one that is blocked tries
 /// again five times, a second apart, and then gives the action up. So does a person that is led
 /// away from the thing it uses.
 ///
@@ -119,9 +119,9 @@ class ActivityDirector {
         int asks = 0;              // for a door to open, since the person came to it
     };
     /// The ways of a person, through the shut doors that let it pass.
-    struct Ways {
+    struct Paths {
         std::vector<ShutDoor> doors;
-        std::shared_ptr<const GoalWays> goals;
+        std::shared_ptr<const GoalPaths> goals;
     };
     /// A door that is open for people.
     struct OpenedDoor {
@@ -150,11 +150,11 @@ class ActivityDirector {
     void beginUse(Simulation& simulation, Doer& doer) const;
     void endUse(Simulation& simulation, Doer& doer) const;
     void watchStay(const World& world, std::size_t mover, Doer& doer);
-    [[nodiscard]] std::vector<GoalWays::Spot> spotsOfOthers(const World& world,
-                                                            std::size_t mover) const;
-    Ways waysOf(const World& world, std::size_t mover);
-    std::shared_ptr<const GoalWays> waysThrough(const World& world, double height,
-                                                std::span<const ShutDoor> doors);
+    [[nodiscard]] std::vector<GoalPaths::Spot> spotsOfOthers(const World& world,
+                                                             std::size_t mover) const;
+    Paths waysOf(const World& world, std::size_t mover);
+    std::shared_ptr<const GoalPaths> waysThrough(const World& world, double height,
+                                                 std::span<const ShutDoor> doors);
     bool awaitDoor(Simulation& simulation, std::size_t mover, Doer& doer, const ShutDoor& door);
     void passOpened(const World& world, std::size_t mover, const std::vector<Point2>& way);
     void closeDoors(Simulation& simulation);
@@ -175,11 +175,11 @@ class ActivityDirector {
     std::vector<Doer*> waiting_;  // for their turn, the first one longest
     std::int64_t work_left_;      // cells to look at before others wait; negative: a debt
     // By the height of people, and the ids of the shut doors that are taken as open.
-    struct KeptWays {
-        std::shared_ptr<const GoalWays> goals;
+    struct KeptPaths {
+        std::shared_ptr<const GoalPaths> goals;
         std::int64_t last_use = 0;
     };
-    std::map<std::pair<double, std::string>, KeptWays> ways_;
+    std::map<std::pair<double, std::string>, KeptPaths> ways_;
     std::int64_t ways_uses_ = 0;
     std::vector<ShutDoor> shut_doors_;  // of the world
     std::int64_t ways_of_ = -1;         // changes of the world then

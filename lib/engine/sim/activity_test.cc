@@ -16,7 +16,7 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sim/goal_ways.h"
+#include "sim/goal_paths.h"
 #include "sim/simulation.h"
 #include "support/test_layout.h"
 
@@ -82,9 +82,9 @@ TEST(DayPlan, NamesAreWords) {
     }
 }
 
-TEST(GoalWays, GoesThroughOpenDoorsAlone) {
+TEST(GoalPaths, GoesThroughOpenDoorsAlone) {
     const Point2 from{-4, 2};
-    const GoalWays open(home(), 0.25, 1.7), shut(home(""), 0.25, 1.7);
+    const GoalPaths open(home(), 0.25, 1.7), shut(home(""), 0.25, 1.7);
     EXPECT_TRUE(shut.way(from, "right").empty());
     EXPECT_TRUE(open.way(from, "nowhere").empty());
     const std::vector<Point2> way = open.way(from, "right");
@@ -118,12 +118,12 @@ Scene flat(const std::string& door) {
         "human id=a at=2,1.5\n");
 }
 
-TEST(GoalWays, EndsBesideThings) {
-    const GoalWays open(flat("open=yes"), 0.25, 1.7), shut(flat(""), 0.25, 1.7);
+TEST(GoalPaths, EndsBesideThings) {
+    const GoalPaths open(flat("open=yes"), 0.25, 1.7), shut(flat(""), 0.25, 1.7);
     const Point2 from{2, 1.5};
     const std::vector<Point2> way = open.way(from, "sofa");
     ASSERT_FALSE(way.empty());
-    EXPECT_LE(way.back().x, -3.45 + GoalWays::kReach);
+    EXPECT_LE(way.back().x, -3.45 + GoalPaths::kReach);
     EXPECT_TRUE(open.isAt(way.back(), "sofa"));
     EXPECT_FALSE(open.isAt({0.15, 1.45}, "sofa"));
     // The wall wb parts the chest from the kitchen.

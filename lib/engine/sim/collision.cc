@@ -37,7 +37,7 @@ double squareAbove(double distance) {
 }
 
 /// The relative motion of a point past the origin.
-struct RelativeWay {
+struct RelativePath {
     Vec2 from, to;
 
     [[nodiscard]] double nearest() const {
@@ -260,7 +260,7 @@ bool meetsBody(const Move& move, const Move& other) {
         const Point2 next = parts == 1 ? move.end() : move.place(part);
         for (const BodyDisc& disc : *other.body)
             if (disc.bottom < move.height &&
-                RelativeWay{last - disc.center, next - disc.center}.stops(
+                RelativePath{last - disc.center, next - disc.center}.stops(
                     move.radius + disc.radius - kContactTolerance))
                 return true;
         last = next;
@@ -274,7 +274,7 @@ bool collides(const Move& move, const Move& other, bool other_moves) {
     if (meetsBody(move, other)) return true;
     const double reach = move.radius + other.radius - kContactTolerance;
     const Point2 other_end = other_moves ? other.end() : other.start();
-    const RelativeWay way{move.start() - other.start(), move.end() - other_end};
+    const RelativePath way{move.start() - other.start(), move.end() - other_end};
     const double lag = move.to.lag + (other_moves ? other.to.lag : 0);
     // Most are too far apart for any way to meet.
     const double farthest = reach + lag + move.to.path + (other_moves ? other.to.path : 0);
@@ -284,7 +284,7 @@ bool collides(const Move& move, const Move& other, bool other_moves) {
     Vec2 last = way.from;
     for (int part = 1; part <= Move::kParts; ++part) {
         const Vec2 next = move.place(part) - (other_moves ? other.place(part) : other.start());
-        if (RelativeWay{last, next}.stops(reach)) return true;
+        if (RelativePath{last, next}.stops(reach)) return true;
         last = next;
     }
     return false;

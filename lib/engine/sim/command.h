@@ -33,7 +33,7 @@ std::optional<Verb> verbNamed(std::string_view name);
 struct Command {
     Verb verb = Verb::Stop;
     double value = 0;
-    /// Of Path: at least one point. Of Goto: the goal, and once World::findWay() has found the way
+    /// Of Path: at least one point. Of Goto: the goal, and once World::findPath() has found the way
     /// to it, all points after the start.
     MotionPlan course = {};
     double speed = 0;  ///< of Path and Goto, m/s; 0: the default

@@ -195,7 +195,7 @@ struct Derived {
     static Pose3 pose() { return {{0, 0, 0.15}, {}, {}, {}}; }
 
     ObstacleSets obstacles;
-    Worlds worlds;
+    RayScenes worlds;
 };
 
 TEST(RandomEdits, ARoomAnswersLikeOneBuiltFromItsRecords) {

@@ -79,7 +79,7 @@ AllReadings readByRun(const Scene& scene, bool noise, SimTime duration) {
 AllReadings readByScan(const Scene& scene, bool noise, double duration) {
     AllReadings all;
     const Sensors sensors = sensorsOf(scene, {});
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
     const Photographer photographer(scene, {.seed = 7, .with_noise = noise});
     TakerOptions options{.photographer = &photographer};

@@ -40,7 +40,7 @@ double lengthOf(Point2 from, const std::vector<Point2>& way) {
 
 }  // namespace
 
-const WayFinder& World::Data::finderOf(std::size_t mover) {
+const PathFinder& World::Data::finderOf(std::size_t mover) {
     const double radius = movers[mover].model.radius;
     const Obstacles& bodies = *states[mover].obstacles;
     const auto found = finders.find({&bodies, radius});
@@ -50,8 +50,8 @@ const WayFinder& World::Data::finderOf(std::size_t mover) {
         .first->second;
 }
 
-std::vector<WayFinder::Spot> World::Data::standingBeside(std::size_t mover) const {
-    std::vector<WayFinder::Spot> standing;
+std::vector<PathFinder::Spot> World::Data::standingBeside(std::size_t mover) const {
+    std::vector<PathFinder::Spot> standing;
     for (std::size_t i = 0; i < movers.size(); ++i) {
         const Motion& motion = motions[i];
         if (i != mover && std::abs(motion.drive.speed) + std::abs(motion.side.speed) < kStands)
@@ -64,7 +64,7 @@ std::vector<WayFinder::Spot> World::Data::standingBeside(std::size_t mover) cons
     return standing;
 }
 
-std::vector<WayFinder::Spot> World::standingBeside(std::size_t mover) const {
+std::vector<PathFinder::Spot> World::standingBeside(std::size_t mover) const {
     return data_->standingBeside(mover);
 }
 
@@ -98,12 +98,12 @@ std::string World::Data::doorsBetween(std::size_t mover, Point2 goal) const {
     if (doors.empty()) return "";
     const Environment opened = withOpen(*scene, doors);
     const Obstacles bodies(opened, movers[mover].model.height, nullptr);
-    const WayFinder finder(bodies, bounds(opened.indoor()), movers[mover].model.radius);
+    const PathFinder finder(bodies, bounds(opened.indoor()), movers[mover].model.radius);
     const Point2 at = motions[mover].pose.position;
     return barriersText(at, finder.wayBetween(at, goal), doors);
 }
 
-std::string World::findWay(std::size_t mover, Command& command) {
+std::string World::findPath(std::size_t mover, Command& command) {
     assert(command.verb == Verb::Goto && !command.course.path.empty());
     Data& data = *data_;
     const Point2 goal = command.course.path.back();
@@ -160,7 +160,7 @@ bool World::Data::continueTrip(std::size_t mover, Outcome outcome) {
     }
     if (outcome == Outcome::Unreached) {
         if (trip.attempts++ < kMaxAttempts) {
-            const WayFinder& finder = finderOf(mover);
+            const PathFinder& finder = finderOf(mover);
             const Point2 at = motion.pose.position;
             std::vector<Point2> way =
                 finder.around(standingBeside(mover)).wayBetween(at, trip.goal.at);
@@ -176,7 +176,7 @@ bool World::Data::continueTrip(std::size_t mover, Outcome outcome) {
 
 void World::Data::avoidChange(std::size_t mover) {
     // Half of the margin by which ways keep away from bodies, as the mover strays from its way.
-    const double reach = movers[mover].model.radius + WayFinder::kMargin / 2;
+    const double reach = movers[mover].model.radius + PathFinder::kMargin / 2;
     const Obstacles& bodies = *states[mover].obstacles;
     const Point2 at = motions[mover].pose.position;
     Point2 from = at;

@@ -29,7 +29,7 @@ Command goTo(Point2 goal, std::optional<Angle> heading = {}) {
 
 /// Gives a Goto, of which there must be a way. \returns its id
 int send(World& world, std::size_t mover, Command command) {
-    EXPECT_EQ(world.findWay(mover, command), "");
+    EXPECT_EQ(world.findPath(mover, command), "");
     return world.command(mover, command);
 }
 
@@ -47,7 +47,7 @@ TEST(Goto, LeadsRoundAWallAndTurns) {
     const Scene rooms = scene(kRooms.c_str(), "robot id=r at=1,1\n");
     World world(rooms, kStep);
     Command command = goTo({7, 1}, Angle::degrees(90));
-    ASSERT_EQ(world.findWay(0, command), "");
+    ASSERT_EQ(world.findPath(0, command), "");
     EXPECT_GT(command.value, 2 * std::hypot(3, 2));
     EXPECT_LT(command.value, 9);
     EXPECT_EQ(world.command(0, command), 1);
@@ -98,17 +98,17 @@ TEST(Goto, SaysWhyThereIsNoWay) {
         narrow.c_str(), "robot id=wide at=1,1 radius=0.25\nrobot id=slim at=1,3 radius=0.15\n");
     World world(rooms, kStep);
     Command command = goTo({7, 1});
-    EXPECT_EQ(world.findWay(0, command), "no way for wide to 7,1: walls or bodies are between");
+    EXPECT_EQ(world.findPath(0, command), "no way for wide to 7,1: walls or bodies are between");
     EXPECT_EQ(command.course.path, std::vector<Point2>{(Point2{7, 1})});
-    EXPECT_EQ(world.findWay(1, command), "");
+    EXPECT_EQ(world.findPath(1, command), "");
     command = goTo({6, 2.4});
     EXPECT_EQ(
-        world.findWay(1, command),
+        world.findPath(1, command),
         "slim has no room at 6,2.4: desk1 stands there; the nearest point with room is 6,2.7");
-    EXPECT_EQ(world.findWay(0, command), "wide has no room at 6,2.4: desk1 stands there")
+    EXPECT_EQ(world.findPath(0, command), "wide has no room at 6,2.4: desk1 stands there")
         << "it comes nowhere near";
     command = goTo({20, 1});
-    EXPECT_EQ(world.findWay(1, command), "no way for slim to 20,1: it is outside of the room");
+    EXPECT_EQ(world.findPath(1, command), "no way for slim to 20,1: it is outside of the room");
 }
 
 TEST(Goto, NamesTheShutDoorsInTheWay) {
@@ -119,9 +119,9 @@ TEST(Goto, NamesTheShutDoorsInTheWay) {
     const Scene rooms = scene(flat.c_str(), "robot id=r at=1,1 radius=0.25\n");
     World world(rooms, kStep);
     Command command = goTo({11, 1});
-    EXPECT_EQ(world.findWay(0, command), "no way for r to 11,1: da is shut");
+    EXPECT_EQ(world.findPath(0, command), "no way for r to 11,1: da is shut");
     command = goTo({20, 1});
-    EXPECT_EQ(world.findWay(0, command), "no way for r to 20,1: it is outside of the room")
+    EXPECT_EQ(world.findPath(0, command), "no way for r to 20,1: it is outside of the room")
         << "no door leads there";
 }
 
@@ -134,7 +134,7 @@ TEST(Goto, IsNotMisledToTheOtherSideOfAThinWall) {
     World world(rooms, kStep);
     Command command = goTo({6, 3.72});
     EXPECT_EQ(
-        world.findWay(0, command),
+        world.findPath(0, command),
         "no way for r to 6,3.72: it is outside of the room; the nearest point with a way is 6,3.1");
 }
 

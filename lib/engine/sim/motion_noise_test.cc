@@ -134,7 +134,7 @@ TEST(MotionNoise, ErrorsOfDrivesAgreeWithTheirCovariance) {
 
 TEST(MotionNoise, CovariancesOfOdometryHaveClosedForms) {
     // Ahead: a walk of the heading, its integral, and errors of the length.
-    constexpr double kTurn = 0.004, kWay = 0.002;
+    constexpr double kTurn = 0.004, kPath = 0.002;
     const Scene room =
         scene("ispace size=9,9\n", "robot id=r1 odometry_noise=0.01,0.004,0.002,0.001\n");
     World world(room, milliseconds(5), {.seed = 5, .noise = true});
@@ -145,7 +145,7 @@ TEST(MotionNoise, CovariancesOfOdometryHaveClosedForms) {
     EXPECT_NEAR(ahead.hh, kTurn, 1e-9);
     EXPECT_NEAR(ahead.yh, kTurn / 2, 0.02 * kTurn);
     EXPECT_NEAR(ahead.yy, kTurn / 3, 0.02 * kTurn);
-    EXPECT_NEAR(ahead.xx, kWay, 0.02 * kWay);
+    EXPECT_NEAR(ahead.xx, kPath, 0.02 * kPath);
     // On the spot: errors of the turn add, those of the way do not shrink.
     world.command(0, {Verb::Left, 90});
     while (world.time() < std::chrono::seconds(9)) world.step();

@@ -78,7 +78,7 @@ void carryAlong(ArcShape course, Begin begin, double first, double step, int cou
 
 }  // namespace
 
-ArcWay::ArcWay(const Pose2& from, const Pose2& to)
+ArcPath::ArcPath(const Pose2& from, const Pose2& to)
     : from_(from),
       to_(to),
       turn_(wrapped(to.heading - from.heading)),
@@ -89,15 +89,15 @@ ArcWay::ArcWay(const Pose2& from, const Pose2& to)
     chord_ = {c * chord.x + s * chord.y, c * chord.y - s * chord.x};
 }
 
-Pose2 ArcWay::at(double share) const {
+Pose2 ArcPath::at(double share) const {
     if (share == 0) return from_;
     if (share == 1) return to_;
     const Part part = partOf({half_, whole_, chord_.x, chord_.y}, share);
     return {from_.position + Vec2{part.x, part.y}, wrapped(from_.heading + share * turn_)};
 }
 
-void ArcWay::carry(const Pose2& mount, double first, double step, std::size_t begin,
-                   std::size_t end, BeamFrames& frames) const {
+void ArcPath::carry(const Pose2& mount, double first, double step, std::size_t begin,
+                    std::size_t end, BeamFrames& frames) const {
     const Vec2 way = from_ * (mount.position - Point2());
     const Vec2 forward = unitVector(wrapped(from_.heading + mount.heading));
     carryAlong({half_, whole_, chord_.x, chord_.y},

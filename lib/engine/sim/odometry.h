@@ -19,9 +19,9 @@ namespace ispace {
 
 /// The way from one pose to another along an arc, turning at a constant rate: the path of a robot
 /// at constant speeds. It turns by the shorter way, at most half a turn.
-class ArcWay {
+class ArcPath {
   public:
-    ArcWay(const Pose2& from, const Pose2& to);
+    ArcPath(const Pose2& from, const Pose2& to);
 
     /// Returns the pose after a share of the way: 0 gives `from`, 1 exactly `to`.
     [[nodiscard]] Pose2 at(double share) const;

@@ -33,8 +33,8 @@ struct PersonDeed {
 
 /// A verb: `VERB [WORD] [TARGET] [THEN-WORD TARGET] [DURATION]`.
 struct PersonVerb {
-    /// The way of the person before the deed begins.
-    enum class Way {
+    /// How the person comes to it before the deed begins.
+    enum class Approach {
         None,   ///< stays where it is
         Faces,  ///< turns to the target on the spot if that is behind it or aside
         Beside  ///< goes to the target, as `uses` does
@@ -42,7 +42,7 @@ struct PersonVerb {
     std::string verb = {}, word = {};
     std::string target = {};  ///< an example, "chair1"; "": the verb has no target
     bool lasts = false;       ///< it has a duration
-    Way way = Way::None;
+    Approach approach = Approach::None;
     bool is_of_rest = false;  ///< people that sit or lie do it as well
     bool interrupts = false;  ///< a line that begins with it ends what the person is doing
     /// Returns the ids of further targets besides zones, elements and things of extensions. Null:

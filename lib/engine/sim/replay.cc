@@ -216,7 +216,7 @@ bool Replay::step(World& world, bool reads) {
         if (*mover < odometries_.size()) odometries_[*mover] = state.odometry;
     }
     for (const auto& [id, hit] : reader_.bumpers())
-        if (const auto robot = world.robotNamed(id)) world.feel(*robot, hit);
+        if (const auto robot = world.robotNamed(id)) world.setBumpers(*robot, hit);
     if (reads) {
         collide(world);
         giveUp(world);

@@ -162,7 +162,7 @@ class SensorReader {
     ZoneTemperatures zones_;
     InertialMeans inertial_;
     std::vector<Sensor> sensors_;  // at their starts
-    Worlds* worlds_;
+    RayScenes* worlds_;
     std::vector<Periods> periods_;
     std::vector<SimTime> due_;
     std::vector<SimTime> durations_;  // of scans, rounded up to steps

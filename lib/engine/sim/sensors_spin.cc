@@ -74,7 +74,7 @@ const Pose2& SensorReader::carrierIn(const MoverPoses& places, const Sensor& sen
 Pose3 SensorReader::poseOf(const Sensor& sensor, const PoseHistory::Walk& walk,
                            double later) const {
     if (!sensor.mount && !sensor.person) return sensor.pose;
-    const ArcWay way(carrierIn(walk.from(), sensor), carrierIn(walk.to(), sensor));
+    const ArcPath way(carrierIn(walk.from(), sensor), carrierIn(walk.to(), sensor));
     return poseOn(sensor, way.at(walk.share().at(later)));
 }
 
@@ -208,8 +208,8 @@ bool SensorReader::sweepLevel(const Laser& laser, std::size_t sensor, BeamFrames
             moves = moves || from != to;
             const auto share = walk.share();
             const BeamsAmong beams = order.beams(begin, end, bodies_);
-            ArcWay(from, to).carry(mount, share.at(order.timeOfBeam(beams.begin)),
-                                   order.step() * share.rate, beams.begin, beams.end, frames);
+            ArcPath(from, to).carry(mount, share.at(order.timeOfBeam(beams.begin)),
+                                    order.step() * share.rate, beams.begin, beams.end, frames);
         });
     return moves;
 }

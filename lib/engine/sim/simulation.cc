@@ -128,7 +128,7 @@ void Simulation::giveScripted() {
         if (!mover || !world_->refusal(*mover, timed.command).empty()) continue;
         Command command = timed.command;
         if (command.verb == Verb::Goto) {
-            if (std::string none = world_->findWay(*mover, command); !none.empty()) {
+            if (std::string none = world_->findPath(*mover, command); !none.empty()) {
                 script_events_.push_back({.kind = EventKind::Unreached,
                                           .id = world_->movers()[*mover].id,
                                           .place = command.course.path.back(),

@@ -7,19 +7,19 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/joined_worlds.h"
+#include "sim/worlds.h"
 
 namespace ispace {
 
 /// The world of a run that has no others: a room with the id "", so that names of things have no
 /// room before them. Movers stay in it, so that they take commands and changes of the room alone.
-class SoleWorld final : public JoinedWorlds {
+class SoleWorld final : public Worlds {
   public:
     /// \pre the simulation outlives this object
     explicit SoleWorld(Simulation& simulation) : room_{"", &simulation} {}
 
     [[nodiscard]] bool areCoupled() const override { return false; }
-    [[nodiscard]] std::span<const JoinedRoom> rooms() const override { return {&room_, 1}; }
+    [[nodiscard]] std::span<const RunRoom> rooms() const override { return {&room_, 1}; }
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view /*mover*/) const override {
         return std::nullopt;
     }
@@ -28,7 +28,7 @@ class SoleWorld final : public JoinedWorlds {
     [[nodiscard]] std::vector<PassageOutline> passageOutlines(std::size_t /*room*/) const override {
         return {};
     }
-    [[nodiscard]] std::vector<PlannedWay> plannedWays(std::size_t /*room*/) const override {
+    [[nodiscard]] std::vector<PlannedPath> plannedPaths(std::size_t /*room*/) const override {
         return {};
     }
     TripAnswer travel(const std::string& /*mover*/, TripPlan /*plan*/) override {
@@ -57,7 +57,7 @@ class SoleWorld final : public JoinedWorlds {
 
   private:
     static constexpr const char* kNone = "this run has one room";
-    JoinedRoom room_;
+    RunRoom room_;
 };
 
 }  // namespace ispace

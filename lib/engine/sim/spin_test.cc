@@ -223,7 +223,7 @@ TEST(PoseHistory, ALongOneStaysSmall) {
     PoseHistory::Walk walk(trail, milliseconds(100'000));
     for (double later = 0; later <= 100; later += 0.37) {
         walk.to(later);
-        const ArcWay way(walk.from().robots[0], walk.to().robots[0]);
+        const ArcPath way(walk.from().robots[0], walk.to().robots[0]);
         EXPECT_NEAR(way.at(walk.share().at(later)).position.x, 100 + later, 1e-9);
     }
 }

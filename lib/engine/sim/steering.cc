@@ -482,8 +482,8 @@ double Steering::untilLine(const Course& course, double most, double needed) con
 bool Steering::isFreeByIndex(const Segment2& way) const {
     const double ahead = speed_ * horizon_ + kGap;
     if (helm_->clearance > ahead) return true;
-    const ObstacleIndex::Way look = helm_->index->look(way, radius_ + kGap);
-    if (look != ObstacleIndex::Way::Unknown) return look == ObstacleIndex::Way::Clear;
+    const ObstacleIndex::Outlook look = helm_->index->look(way, radius_ + kGap);
+    if (look != ObstacleIndex::Outlook::Unknown) return look == ObstacleIndex::Outlook::Clear;
     helm_->index->findIn(bounds(way).expanded(radius_ + kGap), nearby_);
     const double farthest = radius_ + ahead;
     return std::none_of(nearby_.begin(), nearby_.end(), [&](const Segment2& line) {

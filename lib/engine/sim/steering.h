@@ -52,10 +52,10 @@ class ObstacleIndex {
     ObstacleIndex(const ObstacleIndex&) = default;
     ObstacleIndex& operator=(const ObstacleIndex&) = default;
     virtual ~ObstacleIndex() = default;
-    enum class Way { Clear, Blocked, Unknown };
+    enum class Outlook { Clear, Blocked, Unknown };
     /// Returns Clear only if no obstacle comes nearer to the way than `reach`, and Blocked only if
     /// one does although none is as near to its beginning.
-    [[nodiscard]] virtual Way look(const Segment2& way, double reach) const = 0;
+    [[nodiscard]] virtual Outlook look(const Segment2& way, double reach) const = 0;
     /// Replaces `lines` by those whose bounds meet the box, and possibly others, some repeated.
     virtual void findIn(const Box2& box, std::vector<Segment2>& lines) const = 0;
 

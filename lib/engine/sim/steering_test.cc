@@ -68,8 +68,8 @@ class MazeIndex : public ObstacleIndex {
             lines_.push_back({wall.a, along, square > 0 ? 1 / square : 0});
         }
     }
-    [[nodiscard]] Way look(const Segment2& /*way*/, double /*reach*/) const override {
-        return Way::Unknown;
+    [[nodiscard]] Outlook look(const Segment2& /*way*/, double /*reach*/) const override {
+        return Outlook::Unknown;
     }
     void findIn(const Box2& /*box*/, std::vector<Segment2>& lines) const override {
         lines = walls_;

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxEnds = 4096;
 
 World::World(std::shared_ptr<const Scene> scene, SimTime step, const RunOptions& options)
     : data_(std::make_shared<Data>(
-          std::make_shared<SceneResources>(std::move(scene), options, Worlds::Meshes()), step,
+          std::make_shared<SceneResources>(std::move(scene), options, RayScenes::Meshes()), step,
           options)) {
     assert(kMinStep <= step && step <= kMaxStep);
     data_->sensors.read(data_->time, data_->where());
@@ -160,7 +160,7 @@ std::vector<std::vector<float>> World::sonars() {
     return all;
 }
 
-void World::feel(std::size_t robot, std::vector<bool> bumpers) {
+void World::setBumpers(std::size_t robot, std::vector<bool> bumpers) {
     data_->states[robot].recorded_bumpers = std::move(bumpers);
 }
 
@@ -320,7 +320,7 @@ void World::change(Scene scene, std::span<const std::string> placed) {
 
 void World::restart(Scene scene) { restart(preparer()(std::move(scene))); }
 
-std::shared_ptr<const CarriedState> World::carried(std::size_t mover) const {
+std::shared_ptr<const CarriedState> World::exportMover(std::size_t mover) const {
     const Data& data = *data_;
     CarriedState state{.ids = data.states[mover].ids, .pose = data.motions[mover].pose};
     if (mover < data.odometers.size())
@@ -330,7 +330,7 @@ std::shared_ptr<const CarriedState> World::carried(std::size_t mover) const {
     return std::make_shared<const CarriedState>(state);
 }
 
-void World::resume(std::size_t mover, const CarriedState& state) {
+void World::importMover(std::size_t mover, const CarriedState& state) {
     Data& data = *data_;
     data.states[mover].ids = state.ids;
     if (mover < data.odometers.size())
@@ -339,7 +339,7 @@ void World::resume(std::size_t mover, const CarriedState& state) {
         data.gaits[mover - data.odometers.size()] = state.gait;
 }
 
-void World::countOn(std::size_t mover, const CarriedState& state) {
+void World::continueIds(std::size_t mover, const CarriedState& state) {
     data_->states[mover].ids = state.ids;
 }
 

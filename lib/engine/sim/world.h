@@ -16,9 +16,9 @@
 #include "sense/detection.h"
 #include "sim/command.h"
 #include "sim/mover.h"
+#include "sim/path_finder.h"
 #include "sim/sensor_reading.h"
 #include "sim/sim_time.h"
-#include "sim/way_finder.h"
 #include "sim/wheel_travel.h"
 
 namespace ispace {
@@ -197,17 +197,17 @@ class World {
     [[nodiscard]] std::string refusal(std::size_t mover, const Command& command) const;
     /// Gives a command; the running one ends as Replaced, or Stopped by Stop. Speed, Rotspeed and
     /// Sidespeed keep the goals set by the others. \returns for a command that comes to an end its
-    /// id, counting from 1 for each mover; else 0. \pre refusal() is empty, and findWay() has found
-    /// the way of a Goto
+    /// id, counting from 1 for each mover; else 0. \pre refusal() is empty, and findPath() has
+    /// found the way of a Goto
     int command(std::size_t mover, const Command& command);
     /// Finds the way of a Goto from where the mover is round bodies, not round other movers, and
     /// writes its points and its length into the command. A mover that does not get on tries it
     /// anew, round those that stand, and a change that blocks its way leads it round the change.
     /// \returns the reason why there is no way, or "". O(cells) the first time after a change of
     /// the world
-    [[nodiscard]] std::string findWay(std::size_t mover, Command& command);
+    [[nodiscard]] std::string findPath(std::size_t mover, Command& command);
     /// Returns the circles of all other movers that stand.
-    [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
+    [[nodiscard]] std::vector<PathFinder::Spot> standingBeside(std::size_t mover) const;
     /// Returns the id of the command under way that comes to an end, 0 without one.
     [[nodiscard]] int running(std::size_t mover) const;
     /// Returns the points ahead on the way of a Path or a Goto under way, as last planned.
@@ -241,7 +241,7 @@ class World {
     /// gates.
     void passTo(std::span<const RobotStatus> states);
     /// Sets the bumpers of a robot while it is stalled in recorded steps, until the next call.
-    void feel(std::size_t robot, std::vector<bool> bumpers);
+    void setBumpers(std::size_t robot, std::vector<bool> bumpers);
     /// Goes back to time 0 and its scene. Counts as a change.
     void rewind() { rewind(preparer()(Scene(*sharedBeginning()))); }
 
@@ -267,11 +267,11 @@ class World {
     std::shared_ptr<const void> rewind(const NextScene& next);
     /// Returns the state that a mover takes along into another world: odometry, gait, the number of
     /// its commands.
-    [[nodiscard]] std::shared_ptr<const CarriedState> carried(std::size_t mover) const;
+    [[nodiscard]] std::shared_ptr<const CarriedState> exportMover(std::size_t mover) const;
     /// Goes on from there, at the mover's present pose. \pre the state is of the same kind of mover
-    void resume(std::size_t mover, const CarriedState& state);
+    void importMover(std::size_t mover, const CarriedState& state);
     /// Continues its command ids alone from there.
-    void countOn(std::size_t mover, const CarriedState& state);
+    void continueIds(std::size_t mover, const CarriedState& state);
     /// Returns a new id for a command of this mover that is carried out by a sequence of others.
     int issueId(std::size_t mover);
 

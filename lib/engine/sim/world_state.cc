@@ -18,7 +18,7 @@
 namespace ispace {
 
 SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
-                               const Worlds::Meshes& meshes, const SceneResources* before)
+                               const RayScenes::Meshes& meshes, const SceneResources* before)
     : scene(std::move(made_of)),
       obstacles(obstaclesOf(scene->environment, moversOf(*scene),
                             before == nullptr ? nullptr : &before->obstacles)),

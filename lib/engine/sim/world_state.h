@@ -21,9 +21,9 @@
 #include "sim/mover.h"
 #include "sim/navigator.h"
 #include "sim/odometry.h"
+#include "sim/path_finder.h"
 #include "sim/sensor_scheduler.h"
 #include "sim/sonar_vicinity.h"
-#include "sim/way_finder.h"
 #include "sim/world.h"
 #include "trace/ray_world.h"
 
@@ -35,14 +35,14 @@ struct SceneResources {
     /// \param before of another scene, which may share data with this one; may be null
     /// \throws FormatError for a texture that cannot be read, if there are cameras
     SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
-                   const Worlds::Meshes& meshes, const SceneResources* before = nullptr);
+                   const RayScenes::Meshes& meshes, const SceneResources* before = nullptr);
 
     std::shared_ptr<const Scene> scene;
     ObstacleSets obstacles;
     ObstacleSets echoes;  // by sonarTop(); built when all sonars are read at once
     FrictionMap friction;
     std::shared_ptr<const SurroundedRoom> around;  // null: the room alone
-    Worlds worlds;
+    RayScenes worlds;
     std::unique_ptr<const Scene> photographed;   // in the room with those around it, if there are
     std::unique_ptr<Photographer> photographer;  // if there are cameras
 };
@@ -167,7 +167,7 @@ struct World::Data {
     void layDown(std::size_t mover);
     void end(std::size_t mover, Outcome outcome);
     /// Returns the ways of a mover's size, found anew after a change. O(cells) the first time
-    const WayFinder& finderOf(std::size_t mover);
+    const PathFinder& finderOf(std::size_t mover);
     /// Returns the nearest point about a goal, in whole decimetres and up to 2 m away, where a
     /// mover has room and to which it has a way. Tries few ways.
     std::optional<Point2> nearestRoom(std::size_t mover, Point2 goal);
@@ -176,7 +176,7 @@ struct World::Data {
     /// "" if that does not help.
     [[nodiscard]] std::string doorsBetween(std::size_t mover, Point2 goal) const;
     /// Of people that rest, also the parts that stop a robot.
-    [[nodiscard]] std::vector<WayFinder::Spot> standingBeside(std::size_t mover) const;
+    [[nodiscard]] std::vector<PathFinder::Spot> standingBeside(std::size_t mover) const;
     /// Goes on with a Goto whose way came to an end. \returns false if that ends the command
     bool continueTrip(std::size_t mover, Outcome outcome);
     /// After a change: finds another way if bodies stand in the present one.
@@ -211,8 +211,8 @@ struct World::Data {
     std::vector<Gait> gaits;    // of people
     std::vector<Angle> swings;  // of their limbs
     std::vector<Navigator> pilots;
-    std::map<std::pair<const Obstacles*, double>, WayFinder> finders;  // by bodies and radius
-    std::vector<Odometer> odometers;                                   // of robots
+    std::map<std::pair<const Obstacles*, double>, PathFinder> finders;  // by bodies and radius
+    std::vector<Odometer> odometers;                                    // of robots
     std::vector<std::size_t> kept_starts;  // start errors lead to no free position
     std::vector<Move> moves;
     std::optional<double> longest_step;  // while it is valid

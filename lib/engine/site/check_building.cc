@@ -48,7 +48,8 @@ Vec2 along(Angle heading) { return Pose2{{}, heading} * Vec2{1, 0}; }
 
 }  // namespace
 
-bool hasWayOn(const SiteScene& building, std::size_t storey, Point2 end, std::optional<Vec2> back) {
+bool hasPathOn(const SiteScene& building, std::size_t storey, Point2 end,
+               std::optional<Vec2> back) {
     constexpr int kDirections = 8;
     constexpr double kAhead = 0.3;  // cosine
     const Storey& own = building.document.storeys[storey];
@@ -104,7 +105,7 @@ class BuildingCheck {
     /// empty: unknown
     void checkEnd(const StoreyPassage& passage, const char* key, const std::string& verb,
                   std::size_t i, Point2 end, std::optional<Vec2> back) {
-        if (hasWayOn(building_, i, end, back)) return;
+        if (hasPathOn(building_, i, end, back)) return;
         const Point2 from = inStorey(storey(i), end);
         const bool is_out = room(i).indoor().locate(from) == Side::Outside;
         report(passage, key,

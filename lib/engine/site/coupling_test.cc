@@ -140,7 +140,7 @@ TEST(Coupling, FloorsAndSurroundingsGiveTheSameFigures) {
             const Scene& floor = *coupling.floor(storey);
             Scene whole = *building.scenes[storey];
             whole.environment = *coupling.surroundings(storey);
-            Worlds one(floor.environment), other(whole.environment);
+            RayScenes one(floor.environment), other(whole.environment);
             const Coverage few = measureCoverage(floor, one, {}),
                            all = measureCoverage(whole, other, {});
             ASSERT_EQ(few.report.sensors.size(), all.report.sensors.size());
@@ -183,7 +183,7 @@ TEST(Coupling, StepsStopSoundInRunsAsWell) {
     const Scene& scene = *building.scenes[0];
     const auto sound_to = [](const Environment& room,
                              std::shared_ptr<const SurroundedRoom> around) {
-        Worlds worlds(room, std::move(around));
+        RayScenes worlds(room, std::move(around));
         worlds.prepareMesh(Surfaces::Solid);
         Directions ahead;
         ahead.resize(1);

@@ -151,7 +151,7 @@ SiteCoverage measureSite(const SiteScene& building, const CoverageOptions& optio
         if (is_new) {
             for (std::size_t k = 0; k < views.size(); ++k)
                 views[k] = withCells(sight, building, outside[i][k], i);
-            Worlds worlds(scene.environment);
+            RayScenes worlds(scene.environment);
             measured.storeys.push_back(measureWithOutside(scene, worlds, options, views, progress));
         } else {
             measured.storeys.push_back(measured.storeys[first->second]);

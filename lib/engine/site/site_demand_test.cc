@@ -30,13 +30,13 @@ SiteScene twoStoreys(const std::string& more = "") {
 }
 
 /// Ways of so many metres along y.
-PeopleWays wayOf(Point2 from, double metres) {
-    WayCutter cutter;
-    for (int i = 0; i <= 20; ++i) cutter.add("ann", i * kWayStep, from + Vec2{0, metres * i / 20});
+PeoplePaths wayOf(Point2 from, double metres) {
+    PathCutter cutter;
+    for (int i = 0; i <= 20; ++i) cutter.add("ann", i * kPathStep, from + Vec2{0, metres * i / 20});
     return cutter.finish();
 }
 
-std::vector<PeopleWays> waysInBoth() { return {wayOf({-3, -2}, 3), wayOf({-2, -1.5}, 2)}; }
+std::vector<PeoplePaths> waysInBoth() { return {wayOf({-3, -2}, 3), wayOf({-2, -1.5}, 2)}; }
 
 ArrangeOptions coarse() {
     ArrangeOptions options;
@@ -52,12 +52,12 @@ SensorSpec pirs(int count) {
     return {record, count};
 }
 
-std::shared_ptr<const Demand> demandOf(const PeopleWays& ways) {
-    return presenceDemand(std::make_shared<PeopleWays>(ways), 0);
+std::shared_ptr<const Demand> demandOf(const PeoplePaths& ways) {
+    return presenceDemand(std::make_shared<PeoplePaths>(ways), 0);
 }
 
 ArrangedBuilding arrangedFor(const SiteScene& building, int sensors,
-                             const std::vector<PeopleWays>& ways) {
+                             const std::vector<PeoplePaths>& ways) {
     ArrangeOptions options = coarse();
     std::vector<RoomGoals> goals(ways.size());
     for (std::size_t i = 0; i < ways.size(); ++i) {
@@ -70,7 +70,7 @@ ArrangedBuilding arrangedFor(const SiteScene& building, int sensors,
 
 /// The share of all ways that the sensors detect, as coverage --presence measures it.
 double presenceIn(const SiteScene& building, const ArrangedBuilding& arranged,
-                  const std::vector<PeopleWays>& ways) {
+                  const std::vector<PeoplePaths>& ways) {
     std::vector<Presence> storeys;
     for (std::size_t i = 0; i < ways.size(); ++i)
         storeys.push_back(measurePresence(
@@ -80,13 +80,13 @@ double presenceIn(const SiteScene& building, const ArrangedBuilding& arranged,
 }
 
 /// The length detected by the best sensors in a room alone, and its bound.
-CurvePoint alone(const Scene& scene, int sensors, const PeopleWays& ways) {
+CurvePoint alone(const Scene& scene, int sensors, const PeoplePaths& ways) {
     ArrangeOptions options = coarse();
     options.demand = demandOf(ways);
     const SensorSpec spec = pirs(sensors);
     SilentProgress progress;
     double length = 0;
-    for (const WayPiece& piece : ways.pieces) length += piece.length;
+    for (const PathPiece& piece : ways.pieces) length += piece.length;
     const Arrangement found =
         arrange(scene, groupsToPlace(scene, std::span(&spec, 1), {}, false), options, progress);
     return {sensors, length * found.value.value_or(0), length * found.bound};
@@ -94,7 +94,7 @@ CurvePoint alone(const Scene& scene, int sensors, const PeopleWays& ways) {
 
 TEST(BuildingDemand, ValueIsTheShareThatCoverageMeasuresAndTheBestSplit) {
     const SiteScene building = twoStoreys();
-    const std::vector<PeopleWays> ways = waysInBoth();
+    const std::vector<PeoplePaths> ways = waysInBoth();
     for (int sensors = 1; sensors <= 3; ++sensors) {
         const ArrangedBuilding result = arrangedFor(building, sensors, ways);
         ASSERT_TRUE(result.found.value);
@@ -117,7 +117,7 @@ TEST(BuildingDemand, ValueIsTheShareThatCoverageMeasuresAndTheBestSplit) {
 
 TEST(BuildingDemand, AStoreyOfNobodyDoesNotMatter) {
     const SiteScene building = twoStoreys();
-    const std::vector<PeopleWays> ways = {waysInBoth()[0], PeopleWays()};
+    const std::vector<PeoplePaths> ways = {waysInBoth()[0], PeoplePaths()};
     const ArrangedBuilding result = arrangedFor(building, 2, ways);
     EXPECT_EQ(result.counts, (std::vector<int>{2, 0}));
     EXPECT_NEAR(*result.found.value, alone(*building.scenes[0], 2, ways[0]).value / 3, 1e-6);
@@ -126,7 +126,7 @@ TEST(BuildingDemand, AStoreyOfNobodyDoesNotMatter) {
 
 TEST(BuildingDemand, SeveralKindsAndATargetAreOneProblem) {
     const SiteScene building = twoStoreys();
-    const std::vector<PeopleWays> ways = waysInBoth();
+    const std::vector<PeoplePaths> ways = waysInBoth();
     ArrangeOptions options = coarse();
     std::vector<RoomGoals> goals(2);
     for (std::size_t i = 0; i < 2; ++i) goals[i].demand = demandOf(ways[i]);
@@ -142,7 +142,7 @@ TEST(BuildingDemand, SeveralKindsAndATargetAreOneProblem) {
 
 TEST(BuildingDemand, SensorsServeTheirOwnStorey) {
     // The shaft does not change what counts.
-    const std::vector<PeopleWays> ways = waysInBoth();
+    const std::vector<PeoplePaths> ways = waysInBoth();
     const ArrangedBuilding closed = arrangedFor(twoStoreys(), 1, ways);
     const SiteScene open = twoStoreys(
         "- shaft: {storeys: 'ground,upper', path: [[1, -1], [2, -1], [2, 1], [1, 1]]}\n");

@@ -79,7 +79,7 @@ TEST(BuildingRobustness, TheOnlyStoreySuffersAsItsRoom) {
     const SiteScene building = sceneOf("- storey: {id: g, height: 3, records: " + kRoom + "}\n");
     const Scene& room = *Coupling(building).floors()[0];
     const SiteCoverage planned = measureSite(building, {});
-    Worlds worlds(room.environment);
+    RayScenes worlds(room.environment);
     const Coverage alone = measureCoverage(room, worlds, {});
     SilentProgress silent;
     const MountingTolerance tolerance{0.1, Angle::degrees(5)};

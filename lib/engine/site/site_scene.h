@@ -76,7 +76,7 @@ std::vector<Diagnostic> checkBuilding(const SiteScene& building);
 /// Returns true if a person can step off the end of a flight, to any side: else checkBuilding()
 /// reports it. \param end in the building \param back direction of the flight from there; empty:
 /// unknown
-bool hasWayOn(const SiteScene& building, std::size_t storey, Point2 end, std::optional<Vec2> back);
+bool hasPathOn(const SiteScene& building, std::size_t storey, Point2 end, std::optional<Vec2> back);
 
 /// Returns one JSON object and a newline, schema ispace-info/1 with an item of `rooms` for each
 /// storey; of a room alone infoJson() and infoText().

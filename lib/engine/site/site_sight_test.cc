@@ -275,7 +275,7 @@ TEST(BuildingSight, StepsStopLevelLasers) {
         towerOf("{laser: {id: l, at: [5, 0.5, 0.5], heading: 90, fov: 10, step: 5}}", "", kFlight);
     RoomsAround rooms(building);
     const Scene& scene = *building.scenes[0];
-    Worlds worlds(scene.environment, rooms.around(0, scene));
+    RayScenes worlds(scene.environment, rooms.around(0, scene));
     worlds.prepare(scene.sensors[0].pose);
     Directions ahead;
     ahead.resize(1);

@@ -91,7 +91,7 @@ std::vector<Suggestion> suggestForStorey(const SiteScene& building, std::size_t 
     own.requirements.clear();
     for (const auto& other : whole)
         if (other != nullptr && other != whole[storey]) own.others.push_back(other.get());
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Coverage measured = measureCoverage(scene, worlds, own.measure);
     std::vector<Suggestion> found =
         suggestChanges(scene, measured, own, building.devices, progress);

@@ -111,7 +111,7 @@ TEST(StoreySight, TheProofHoldsForAllLayoutsOfTheBuilding) {
             best = std::max(best, both.coverage.grid.value_or(0));
             double apart = 0;
             for (const auto& floor : both.floors) {
-                Worlds worlds(floor->environment);
+                RayScenes worlds(floor->environment);
                 const Coverage own = measureCoverage(*floor, worlds, coarseFloor());
                 apart += own.report.coverage.grid.value_or(0) * own.report.indoor_area;
             }

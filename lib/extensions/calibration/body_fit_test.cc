@@ -63,7 +63,7 @@ std::vector<MovingBody> bodyAt(const WalkOptions& how, const Step& step) {
 std::vector<WatchingLaser> recorded(const std::vector<Sensor>& sensors, const WalkOptions& how) {
     const Scene scene =
         testing::scene("ispace at=4,3 size=8,6,2.5\ncube at=7.4,0.5 size=0.8,0.6,0.7\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     std::vector<WatchingLaser> lasers;
     for (const Sensor& sensor : sensors) {
         worlds.prepare(sensor.pose);

@@ -133,7 +133,7 @@ class ForwardModel {
 
   private:
     const Environment& environment_;
-    Worlds worlds_;
+    RayScenes worlds_;
     const Sensor& sensor_;
 };
 

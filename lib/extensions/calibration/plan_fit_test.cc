@@ -31,7 +31,7 @@ Sensor laserAt(double x, double y, double heading, double max_range = 30) {
 }
 
 std::vector<std::vector<float>> noisyScans(const Scene& scene, const Sensor& truth, int count) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     worlds.prepare(truth.pose);
     const MovingBodies bodies;
     LaserCaster caster(worlds, bodies, truth, false, {.noise_seed = 7});

@@ -15,7 +15,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/room_state.h"
 #include "sim/activity.h"
-#include "sim/goal_ways.h"
+#include "sim/goal_paths.h"
 #include "sim/simulation.h"
 
 namespace ispace {
@@ -69,7 +69,7 @@ TEST(Curtain, StopsLightAsFarAsItIsDrawn) {
 
 TEST(Curtain, LetsPeoplePass) {
     const Scene scene = sceneOf(kAcross + '\n');
-    EXPECT_FALSE(GoalWays(scene, 0.25, 1.7).way({-2, 0}, "right").empty());
+    EXPECT_FALSE(GoalPaths(scene, 0.25, 1.7).way({-2, 0}, "right").empty());
     World world(scene, milliseconds(100));
     Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
     simulation.follow(readDayPlan("at 00:00 ann closes c; goes right; opens c\n", "s.txt", world));

@@ -14,7 +14,7 @@ namespace {
 TEST(Curtain, IsACoverOfHomeAssistant) {
     testing::addCurtainsOnce();
     const Schema& schema = *sceneSchemas().find("curtain");
-    const MqttThing thing{"c", "curtain", {{"drawn", "i/c/drawn", schema.find("drawn")}}};
+    const MqttEntity thing{"c", "curtain", {{"drawn", "i/c/drawn", schema.find("drawn")}}};
     const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_TRUE(messages[0].topic.starts_with("homeassistant/cover/")) << messages[0].topic;

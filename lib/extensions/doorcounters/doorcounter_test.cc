@@ -49,7 +49,7 @@ std::string refusal(const std::string& records) {
 
 /// Returns what the counter reads with these robots and people at their starts.
 DoorCount readIn(const Scene& scene) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     worlds.prepareMesh();
     const MovingBodies bodies(bodiesOf(scene));
     const Sensor& sensor = scene.sensors.at(0);

@@ -12,7 +12,7 @@ namespace {
 
 TEST(DoorCounter, HasStatisticsInHomeAssistant) {
     testing::addDoorCountersOnce();
-    const MqttThing thing{
+    const MqttEntity thing{
         "c",
         "doorcounter",
         {{"entered", "i/c/entered"}, {"left", "i/c/left"}, {"present", "i/c/present"}}};

@@ -100,7 +100,7 @@ bool EvenDemand::isServedBy(const Sensor& sensor) const {
     return kindOf(sensor.model).perceives && !sensor.mount && !sensor.person;
 }
 
-std::vector<std::uint8_t> EvenDemand::sightOf(const Sensor& sensor, const Worlds& worlds) const {
+std::vector<std::uint8_t> EvenDemand::sightOf(const Sensor& sensor, const RayScenes& worlds) const {
     std::vector<std::uint8_t> free(cells_.size(), 0);
     const auto view = fieldOfView(sensor);
     if (!view) return free;  // lasers share no sight, see servedBy()

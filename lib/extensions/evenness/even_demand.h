@@ -58,7 +58,7 @@ class EvenDemand : public Demand {
     void mustServe(const SensorModel& model, const std::string& id) const override;
     [[nodiscard]] bool isServedBy(const Sensor& sensor) const override;
     [[nodiscard]] std::vector<std::uint8_t> sightOf(const Sensor& sensor,
-                                                    const Worlds& worlds) const override;
+                                                    const RayScenes& worlds) const override;
     using Demand::servedBy;
     [[nodiscard]] CellSet servedBy(const Sensor& sensor,
                                    const std::vector<std::uint8_t>& sight) const override;
@@ -73,7 +73,7 @@ class EvenDemand : public Demand {
     std::shared_ptr<const Scene> scene_;
     EvenRule rule_;
     Grid grid_;
-    Worlds worlds_;
+    RayScenes worlds_;
     VisibleArea sight_;
     std::vector<std::size_t> cells_;  // of the grid, those that count
     std::vector<double> weights_;     // of the first elements of all cells, then of the second, ...

@@ -37,7 +37,7 @@ Sensor placed(const Scene& scene, const std::string& spec, Point3 place, double 
 }
 
 CellSet servedIn(const Scene& scene, const Sensor& sensor, const EvenDemand& demand) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     worlds.prepare(sensor.pose);
     worlds.prepareMesh(kindOf(sensor.model).stopped_by);
     return demand.servedBy(sensor, worlds);
@@ -80,7 +80,7 @@ TEST(EvenDemand, SensorsSeeTheCellsOfCoverage) {
     const Scene scene = roomScene(std::string(kTwoRooms) + "desk id=d at=2,1\n");
     const auto demand = demandOf(scene, {.depth = 2}, {}, CellSize{0.1});
     const Target target = makeTarget(scene.environment, CellSize{0.1}, kScanHeight);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const VisibleArea sight(scene.environment, 0, &worlds);
     for (const Sensor& sensor : {placed(scene, "laser,range=4,fov=240", {-2, 0.3, 0.15}, 20),
                                  placed(scene, "laser,range=20,fov=360", {1, -1, 0.15}, 0),

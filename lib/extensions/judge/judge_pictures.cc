@@ -71,14 +71,14 @@ class TrackPlan {
 };
 
 /// A truth's ways while it is matched, and while it is not.
-struct Ways {
+struct Paths {
     std::vector<std::vector<Point2>> found, lost;
 };
 
 /// Cuts the ways of all truths at changes, over frames [first, last).
-std::vector<Ways> waysOf(const Judgement& judgement, std::size_t first, std::size_t last) {
+std::vector<Paths> waysOf(const Judgement& judgement, std::size_t first, std::size_t last) {
     const JudgedRun& run = judgement.judged;
-    std::vector<Ways> ways(run.truths.size());
+    std::vector<Paths> ways(run.truths.size());
     struct State {
         std::size_t frame = 0;
         bool is_there = false, is_found = false;
@@ -111,17 +111,17 @@ std::vector<Ways> waysOf(const Judgement& judgement, std::size_t first, std::siz
     return ways;
 }
 
-constexpr Color kFoundWay = Color::rgb(0x57606A), kLostWay = Color::rgb(0xB3261E);
+constexpr Color kFoundPath = Color::rgb(0x57606A), kLostPath = Color::rgb(0xB3261E);
 
-void drawWays(Picture& picture, const Judgement& judgement, const std::vector<Ways>& ways,
-              double em) {
+void drawPaths(Picture& picture, const Judgement& judgement, const std::vector<Paths>& ways,
+               double em) {
     for (std::size_t i = 0; i < ways.size(); ++i) {
         const std::string& id = judgement.judged.truths[i].id;
         picture.pushGroup(id, id);
         picture.lines(ways[i].found,
-                      {Stroke{palette::kWhite.faded(0.8), em / 3}, Stroke{kFoundWay, em / 8}});
+                      {Stroke{palette::kWhite.faded(0.8), em / 3}, Stroke{kFoundPath, em / 8}});
         picture.lines(ways[i].lost,
-                      {Stroke{palette::kWhite.faded(0.8), em / 2}, Stroke{kLostWay, em / 4}});
+                      {Stroke{palette::kWhite.faded(0.8), em / 2}, Stroke{kLostPath, em / 4}});
         picture.pop();
     }
 }
@@ -135,15 +135,15 @@ Picture judgementMap(const Judgement& judgement, const Scene& scene, const std::
     const double em = plan.em();
     picture.pushLayer("ways");
     picture.pushView(plan.view());
-    drawWays(picture, judgement, waysOf(judgement, 0, judgement.judged.times.size()), em);
+    drawPaths(picture, judgement, waysOf(judgement, 0, judgement.judged.times.size()), em);
     picture.pop();
     picture.pop();
     picture.pushLayer("losses");
     for (std::size_t i = 0; i < judgement.losses.size(); ++i) {
         const Point2 at = plan.view() * judgement.losses[i].place;
-        picture.circle(at, em / 3, {kLostWay, Stroke{palette::kWhite, em / 10}});
+        picture.circle(at, em / 3, {kLostPath, Stroke{palette::kWhite, em / 10}});
         picture.text({at.x + em / 2, at.y - em / 4}, std::to_string(i + 1),
-                     {em, true, Align::Left, kLostWay, palette::kWhite});
+                     {em, true, Align::Left, kLostPath, palette::kWhite});
     }
     picture.pop();
     picture.pushLayer("legend");
@@ -192,12 +192,12 @@ std::string lossFilm(const Judgement& judgement, const Scene& scene, std::size_t
     for (std::size_t f = first; f <= last; f += stride) {
         Picture picture = base;
         picture.pushView(plan.view());
-        drawWays(picture, judgement, waysOf(judgement, f > trail ? f - trail : 0, f + 1), em);
+        drawPaths(picture, judgement, waysOf(judgement, f > trail ? f - trail : 0, f + 1), em);
         picture.pop();
         for (const TruthPlace& one : run.truth_places[f])
-            picture.circle(
-                plan.view() * one.place, em / 2,
-                {one.truth == loss.truth ? kLostWay : kFoundWay, Stroke{palette::kWhite, em / 10}});
+            picture.circle(plan.view() * one.place, em / 2,
+                           {one.truth == loss.truth ? kLostPath : kFoundPath,
+                            Stroke{palette::kWhite, em / 10}});
         for (const TruthPlace& one : run.track_places[f]) {
             const Point2 at = plan.view() * one.place;
             picture.circle(at, em * 0.8, {Stroke{seriesColor(one.truth), em / 5}});

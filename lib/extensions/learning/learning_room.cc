@@ -38,8 +38,8 @@ FloorCells cellsOver(const Box2& box) {
 
 }  // namespace
 
-WaysTo::WaysTo(const FloorCells& cells, std::span<const std::uint8_t> is_free, std::size_t cell,
-               double farthest) {
+PathsTo::PathsTo(const FloorCells& cells, std::span<const std::uint8_t> is_free, std::size_t cell,
+                 double farthest) {
     const auto wide = static_cast<std::size_t>(cells.columns);
     const int column = static_cast<int>(cell % wide), row = static_cast<int>(cell / wide);
     const int reach = static_cast<int>(std::min(farthest / FloorCells::kSide + 1, 5000.0));
@@ -48,14 +48,14 @@ WaysTo::WaysTo(const FloorCells& cells, std::span<const std::uint8_t> is_free, s
     columns_ = std::min(cells.columns - 1, column + reach) - column_ + 1;
     rows_ = std::min(cells.rows - 1, row + reach) - row_ + 1;
     low_ = {cells.low.x + FloorCells::kSide * column_, cells.low.y + FloorCells::kSide * row_};
-    cost_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kNoWay);
-    const int most = static_cast<int>(std::min(farthest / kMetres, kNoWay - 1.0));
+    cost_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), kNoPath);
+    const int most = static_cast<int>(std::min(farthest / kMetres, kNoPath - 1.0));
     const auto free_at = [&](int x, int y) {
         if (x < 0 || y < 0 || x >= columns_ || y >= rows_) return false;
         return is_free[static_cast<std::size_t>(y + row_) * wide +
                        static_cast<std::size_t>(x + column_)] != 0;
     };
-    // Dial's algorithm, as WayFinder has it, on cells twice as wide.
+    // Dial's algorithm, as PathFinder has it, on cells twice as wide.
     struct Entry {
         int column, row, cost;
     };
@@ -95,7 +95,7 @@ WaysTo::WaysTo(const FloorCells& cells, std::span<const std::uint8_t> is_free, s
     }
 }
 
-std::optional<double> WaysTo::from(Point2 p) const {
+std::optional<double> PathsTo::from(Point2 p) const {
     const double x = (p.x - low_.x) / FloorCells::kSide - 0.5;
     const double y = (p.y - low_.y) / FloorCells::kSide - 0.5;
     if (!(x > -1 && y > -1 && x < columns_ && y < rows_)) return std::nullopt;
@@ -104,20 +104,20 @@ std::optional<double> WaysTo::from(Point2 p) const {
     for (int row = std::max(0, bottom); row <= std::min(rows_ - 1, bottom + 1); ++row)
         for (int column = std::max(0, left); column <= std::min(columns_ - 1, left + 1); ++column) {
             const std::uint16_t cost = costAt(column, row);
-            if (cost == kNoWay || (best && cost * kMetres >= *best)) continue;
+            if (cost == kNoPath || (best && cost * kMetres >= *best)) continue;
             const double way = cost * kMetres + FloorCells::kSide * std::hypot(x - column, y - row);
             if (!best || way < *best) best = way;
         }
     return best;
 }
 
-std::optional<double> WaysTo::fromCell(const FloorCells& cells, std::size_t cell) const {
+std::optional<double> PathsTo::fromCell(const FloorCells& cells, std::size_t cell) const {
     const auto wide = static_cast<std::size_t>(cells.columns);
     const int column = static_cast<int>(cell % wide) - column_;
     const int row = static_cast<int>(cell / wide) - row_;
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return std::nullopt;
     const std::uint16_t cost = costAt(column, row);
-    return cost == kNoWay ? std::nullopt : std::optional(cost * kMetres);
+    return cost == kNoPath ? std::nullopt : std::optional(cost * kMetres);
 }
 
 SharedVicinities::SharedVicinities(const Obstacles& obstacles, const Box2& box, double reach)
@@ -305,7 +305,7 @@ bool ClearanceField::isClear(const Segment2& way, double reach) const {
            });
 }
 
-ObstacleIndex::Way ClearanceField::look(const Segment2& way, double reach) const {
+ObstacleIndex::Outlook ClearanceField::look(const Segment2& way, double reach) const {
     // From circle to circle in which all is clear; where they are narrow, in short steps that only
     // look for an obstacle. The margin exceeds those that steering leaves for rounding.
     constexpr double kLeastStep = 0.05, kShortStep = 0.1, kMargin = 3e-6;
@@ -316,21 +316,21 @@ ObstacleIndex::Way ClearanceField::look(const Segment2& way, double reach) const
         return x >= 0 && y >= 0 && x < columns_ && y < rows_;
     };
     const double start_room = boundsAt(way.a).least - reach - kMargin;
-    if (!(start_room >= 0) || !is_inside(way.b)) return Way::Unknown;
-    if (start_room >= end) return Way::Clear;
+    if (!(start_room >= 0) || !is_inside(way.b)) return Outlook::Unknown;
+    if (start_room >= end) return Outlook::Clear;
     const auto is_blocked = [&](const Bounds& of) { return of.most < reach - kMargin; };
-    if (is_blocked(boundsAt(way.b))) return Way::Blocked;
+    if (is_blocked(boundsAt(way.b))) return Outlook::Blocked;
     const Vec2 unit = 1 / end * along;
     bool is_clear = start_room >= kLeastStep;
     for (double gone = is_clear ? start_room : kShortStep; gone < end;) {
         const Bounds here = boundsAt(way.a + gone * unit);
-        if (is_blocked(here)) return Way::Blocked;
+        if (is_blocked(here)) return Outlook::Blocked;
         const double room = here.least - reach - kMargin;
         is_clear = is_clear && room >= kLeastStep;
-        if (is_clear && room >= end - gone) return Way::Clear;
+        if (is_clear && room >= end - gone) return Outlook::Clear;
         gone += is_clear ? room : std::max(room, kShortStep);
     }
-    return is_clear ? Way::Clear : Way::Unknown;
+    return is_clear ? Outlook::Clear : Outlook::Unknown;
 }
 
 LearningRoom::LearningRoom(Scene scene, const LearningTask& task, std::size_t goals)
@@ -517,7 +517,7 @@ RoomGoal LearningRoom::goalInZone(const LearningTask& task) const {
         throw FormatError(
             Diagnostic{"", 0, 0, "the robots have no room in the middle of the zone " + task.zone});
     constexpr double kDetours = 4;
-    RoomGoal goal{at, {}, WaysTo(cells_, free_, cell, kDetours * longest_), {}};
+    RoomGoal goal{at, {}, PathsTo(cells_, free_, cell, kDetours * longest_), {}};
     goal.ways.forEachCell(cells_, [&](std::size_t start, double) {
         if (distance(cells_.center(start), at) > task.reach + FloorCells::kSide)
             goal.starts.push_back(static_cast<std::uint32_t>(start));
@@ -551,7 +551,7 @@ void LearningRoom::findGoals(const LearningTask& task, std::size_t count) {
         std::vector<std::optional<RoomGoal>> found(drawn.size());
         tbb::parallel_for(std::size_t{0}, drawn.size(), [&](std::size_t i) {
             const std::uint32_t cell = drawn[i];
-            RoomGoal goal{cells_.center(cell), {}, WaysTo(cells_, free_, cell, most + kStray), {}};
+            RoomGoal goal{cells_.center(cell), {}, PathsTo(cells_, free_, cell, most + kStray), {}};
             if (task.kind == LearningTask::Kind::Dock) {
                 const std::optional<Pose2> dock = dockNear(cell);
                 goal.at = dock->position;

@@ -63,12 +63,12 @@ struct FloorCells {
 };
 
 /// The ways to a point from the cells about it.
-class WaysTo {
+class PathsTo {
   public:
     /// Measures ways of at most `farthest` metres over the cells in `is_free`, to the centre of
     /// `cell`. O(cells within reach)
-    WaysTo(const FloorCells& cells, std::span<const std::uint8_t> is_free, std::size_t cell,
-           double farthest);
+    PathsTo(const FloorCells& cells, std::span<const std::uint8_t> is_free, std::size_t cell,
+            double farthest);
 
     /// Returns the metres from a point, by the best of the four cells around it; empty if none of
     /// them has a way.
@@ -81,7 +81,7 @@ class WaysTo {
         for (int row = 0; row < rows_; ++row)
             for (int column = 0; column < columns_; ++column) {
                 const std::uint16_t cost = costAt(column, row);
-                if (cost == kNoWay) continue;
+                if (cost == kNoPath) continue;
                 visit(
                     static_cast<std::size_t>(row + row_) * static_cast<std::size_t>(cells.columns) +
                         static_cast<std::size_t>(column + column_),
@@ -90,7 +90,7 @@ class WaysTo {
     }
 
   private:
-    static constexpr std::uint16_t kNoWay = 0xffff;
+    static constexpr std::uint16_t kNoPath = 0xffff;
     static constexpr int kAlong = 12, kAcross = 17;  ///< costs of steps across a side and a corner
     static constexpr double kMetres = FloorCells::kSide / kAlong;
 
@@ -108,7 +108,7 @@ class WaysTo {
 struct RoomGoal {
     Point2 at;
     Angle heading;  ///< of a dock: towards its wall
-    WaysTo ways;
+    PathsTo ways;
     std::vector<std::uint32_t> starts;
 };
 
@@ -137,7 +137,7 @@ class ClearanceField : public ObstacleIndex {
     ClearanceField() = default;
     ClearanceField(const Obstacles& obstacles, const Box2& box);
     [[nodiscard]] double least(Point2 p) const override;
-    [[nodiscard]] Way look(const Segment2& way, double reach) const override;
+    [[nodiscard]] Outlook look(const Segment2& way, double reach) const override;
     void findIn(const Box2& box, std::vector<Segment2>& lines) const override;
     [[nodiscard]] std::optional<Some> near(Point2 p) const override;
     [[nodiscard]] double most(Point2 p) const override;

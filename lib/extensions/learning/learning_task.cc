@@ -42,7 +42,7 @@ LearningTask defaultTask(LearningTask::Kind kind) {
     switch (kind) {
         case LearningTask::Kind::Goal:
             task.rewards.push_back({.signal = TaskSignal::Reached, .weight = kPrize});
-            task.rewards.push_back({.signal = TaskSignal::WayProgress});
+            task.rewards.push_back({.signal = TaskSignal::PathProgress});
             task.ends.push_back(arrival);
             break;
         case LearningTask::Kind::Follow:
@@ -58,7 +58,7 @@ LearningTask defaultTask(LearningTask::Kind kind) {
         case LearningTask::Kind::Dock:
             task.reach = 0.1;
             task.rewards.push_back({.signal = TaskSignal::Reached, .weight = kPrize});
-            task.rewards.push_back({.signal = TaskSignal::WayProgress});
+            task.rewards.push_back({.signal = TaskSignal::PathProgress});
             task.rewards.push_back({.signal = TaskSignal::Aim, .weight = -0.01});
             task.ends.push_back(arrival);
             break;

@@ -18,21 +18,21 @@ namespace ispace {
 
 /// The quantities of a step that rows of a task weigh and test.
 enum class TaskSignal {
-    Step,         ///< 1
-    Steps,        ///< steps of the episode so far
-    Reached,      ///< 1 if the robot came to its goal in this step
-    Collision,    ///< 1 if it ran into a body
-    Progress,     ///< metres by which the straight line to the goal became shorter
-    WayProgress,  ///< metres by which the way to the goal round walls became shorter
-    Distance,     ///< metres to the goal
-    Clearance,    ///< least range of the laser, metres
-    Speed,        ///< m/s, forward
-    Turn,         ///< radians turned, of either sign
-    Change,       ///< change of both actions against the last step, their absolute values added
-    NewFloor,     ///< square metres of floor that it came near for the first time
-    Floor,        ///< share of the floor that it has come near
-    Gap,          ///< metres by which it is out of the band of distances at which it follows
-    Aim,          ///< radians between its heading and that of the dock
+    Step,          ///< 1
+    Steps,         ///< steps of the episode so far
+    Reached,       ///< 1 if the robot came to its goal in this step
+    Collision,     ///< 1 if it ran into a body
+    Progress,      ///< metres by which the straight line to the goal became shorter
+    PathProgress,  ///< metres by which the way to the goal round walls became shorter
+    Distance,      ///< metres to the goal
+    Clearance,     ///< least range of the laser, metres
+    Speed,         ///< m/s, forward
+    Turn,          ///< radians turned, of either sign
+    Change,        ///< change of both actions against the last step, their absolute values added
+    NewFloor,      ///< square metres of floor that it came near for the first time
+    Floor,         ///< share of the floor that it has come near
+    Gap,           ///< metres by which it is out of the band of distances at which it follows
+    Aim,           ///< radians between its heading and that of the dock
     kCount
 };
 constexpr std::size_t kTaskSignals = static_cast<std::size_t>(TaskSignal::kCount);

@@ -530,7 +530,7 @@ std::array<double, kTaskSignals> LearningWorld::signalsOf(const LearningSetting&
     set(TaskSignal::Reached, is_reached ? 1 : 0);
     if (has_goals) {
         const std::optional<double> way = room.goals()[own.goal].ways.from(motion.pose.position);
-        if (way && own.way) set(TaskSignal::WayProgress, *own.way - *way);
+        if (way && own.way) set(TaskSignal::PathProgress, *own.way - *way);
         if (way) own.way = way;
     }
     own.distance = distance;

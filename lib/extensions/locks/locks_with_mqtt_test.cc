@@ -14,7 +14,7 @@ namespace {
 TEST(LockChecks, AreLocksOfHomeAssistant) {
     testing::addLocksOnce();
     const Schema& door = *sceneSchemas().find("door");
-    MqttThing thing{"d", "door", {}};
+    MqttEntity thing{"d", "door", {}};
     for (const char* key : {"open", "locked", "forced"})
         thing.keys.push_back({key, std::string("i/d/") + key, door.find(key)});
     const std::vector<MqttMessage> messages = discoveryOf(thing, "i");

@@ -21,14 +21,14 @@ std::string topicOf(const std::string& prefix, std::string_view id, std::string_
 }
 
 /// Returns the things that have states, of all rooms.
-std::vector<MqttThing> thingsOf(const ServerState& state, const std::string& prefix) {
+std::vector<MqttEntity> thingsOf(const ServerState& state, const std::string& prefix) {
     std::unordered_map<std::string, const Record*> records;
     for (const auto& [room, world] : state.worlds()) {
         const Scene& scene = world->scene();
         for (std::size_t i = 0; i < scene.records.size(); ++i)
             records.emplace(nameAcross(room, scene.ids[i]), &scene.records[i]);
     }
-    std::vector<MqttThing> things;
+    std::vector<MqttEntity> things;
     const Record* record = nullptr;
     for (const RoomState& one : state.statesOfAll()) {
         if (things.empty() || things.back().id != one.id) {
@@ -107,9 +107,9 @@ void MqttBridge::introduce(bool all) {
     Topics topics;
     Descriptions descriptions;
     std::vector<MqttMessage> news;
-    std::vector<MqttThing> things = thingsOf(*state_, prefix_);
-    for (MqttThing& one : movers_.things()) things.push_back(std::move(one));
-    for (const MqttThing& thing : things) {
+    std::vector<MqttEntity> things = thingsOf(*state_, prefix_);
+    for (MqttEntity& one : movers_.things()) things.push_back(std::move(one));
+    for (const MqttEntity& thing : things) {
         const auto known = descriptions_.find({thing.id, thing.keyword});
         bool has_news = all || known == descriptions_.end();
         for (const MqttKey& key : thing.keys) {

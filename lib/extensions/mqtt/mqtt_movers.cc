@@ -38,8 +38,8 @@ std::string MqttMovers::topicOf(std::string_view id, std::string_view key) const
     return prefix_ + '/' + topicId(id) + '/' + std::string(key);
 }
 
-std::vector<MqttThing> MqttMovers::things() const {
-    std::vector<MqttThing> things;
+std::vector<MqttEntity> MqttMovers::things() const {
+    std::vector<MqttEntity> things;
     const auto add = [&](const std::string& id, const char* keyword, std::string_view key) {
         things.push_back({id, keyword, {{std::string(key), topicOf(id, key)}}});
     };

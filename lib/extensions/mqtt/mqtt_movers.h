@@ -25,7 +25,7 @@ class MqttMovers {
         : state_(&state), client_(&client), prefix_(std::move(prefix)) {}
 
     /// Returns a thing of each.
-    [[nodiscard]] std::vector<MqttThing> things() const;
+    [[nodiscard]] std::vector<MqttEntity> things() const;
     /// Publishes all anew.
     void publishAll();
     /// Its topic has been removed.
@@ -54,7 +54,7 @@ class MqttMovers {
     std::map<std::string, std::string> known_;                 // states by topic
     std::map<std::string, std::unique_ptr<Session>> errands_;  // of robots that return
     /// Pictures under way, by topic.
-    std::map<std::string, std::shared_ptr<const ServerState::Asked>> pictures_;
+    std::map<std::string, std::shared_ptr<const ServerState::PendingReply>> pictures_;
     SimTime next_{}, next_picture_{};
 };
 

@@ -319,7 +319,7 @@ MqttMessage describeKey(Entity entity, std::string_view keyword, const MqttKey& 
 
 }  // namespace
 
-std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& prefix) {
+std::vector<MqttMessage> discoveryOf(const MqttEntity& thing, const std::string& prefix) {
     const auto* const found =
         std::find_if(std::begin(kComponents), std::end(kComponents),
                      [&](const Component& one) { return one.keyword == thing.keyword; });

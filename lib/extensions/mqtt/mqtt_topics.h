@@ -35,7 +35,7 @@ struct MqttKey {
 };
 
 /// A sensor or actuator with all keys of its state.
-struct MqttThing {
+struct MqttEntity {
     std::string id, keyword;
     std::vector<MqttKey> keys;
 };
@@ -50,6 +50,6 @@ inline constexpr std::string_view kStopRobot = "stop", kReturnRobot = "return_to
 /// Returns the messages of Home Assistant's discovery for a thing, retained: an entity of its
 /// keyword, and one for each key that this entity does not hold, such as the `pan` of a projector:
 /// of the component that the kind of the thing names (ThingKind::entities), else of the key's type.
-std::vector<MqttMessage> discoveryOf(const MqttThing& thing, const std::string& prefix);
+std::vector<MqttMessage> discoveryOf(const MqttEntity& thing, const std::string& prefix);
 
 }  // namespace ispace

@@ -21,7 +21,7 @@
 #include "extensions/navigation/navigation_report.h"
 #include "geom/polygon.h"
 #include "sim/collision.h"
-#include "sim/way_finder.h"
+#include "sim/path_finder.h"
 
 namespace ispace {
 
@@ -73,15 +73,15 @@ Point2 middleOfZone(const Scene& scene, const std::string& id) {
 
 /// Returns the metres of the shortest way of the robot to within `reach` of the goal, round the
 /// things that stand in the room; empty without a way.
-std::optional<double> shortestWay(const Scene& scene, const std::string& robot, Point2 from,
-                                  const NavigationGoal& goal) {
+std::optional<double> shortestPath(const Scene& scene, const std::string& robot, Point2 from,
+                                   const NavigationGoal& goal) {
     const auto found = std::find_if(scene.robots.begin(), scene.robots.end(),
                                     [&](const PlacedRobot& one) { return one.id == robot; });
     if (found == scene.robots.end()) return {};
     if (distance(from, goal.place) <= goal.reach) return 0;
     const RobotModel& model = found->model;
     const Obstacles obstacles(scene.environment, model.height, nullptr);
-    const WayFinder finder(obstacles, bounds(scene.environment.indoor()), model.radius);
+    const PathFinder finder(obstacles, bounds(scene.environment.indoor()), model.radius);
     const std::vector<Point2> way = finder.wayBetween(from, goal.place);
     if (way.empty()) return {};
     double length = 0;
@@ -173,7 +173,7 @@ class NavigationJudge : public OptionGroup {
         if (!text_.zone.empty()) goal.place = middleOfZone(room.scene, text_.zone);
         if (!goal.way)
             goal.way =
-                shortestWay(room.scene, recorded.robot, recorded.run.moments.front().place, goal);
+                shortestPath(room.scene, recorded.robot, recorded.run.moments.front().place, goal);
         return judged(input, recorded, goal);
     }
 

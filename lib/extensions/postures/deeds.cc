@@ -590,15 +590,15 @@ PersonDeed putDown(const DeedMoment& moment) {
 }  // namespace
 
 void addDeeds() {
-    using Way = PersonVerb::Way;
+    using Path = PersonVerb::Approach;
     static const PersonVerb put_down{.word = "to",
                                      .target = "kitchen",
-                                     .way = Way::Beside,
+                                     .approach = Approach::Beside,
                                      .refusal = refuseToPut,
                                      .begin = putDown};
     addPersonVerb({.verb = "carries",
                    .target = "cup",
-                   .way = Way::Beside,
+                   .approach = Approach::Beside,
                    .targets = thingsToCarry,
                    .is_for_goals = false,
                    .aim = aimOf,
@@ -609,14 +609,14 @@ void addDeeds() {
                    .word = "on",
                    .target = "chair1",
                    .lasts = true,
-                   .way = Way::Beside,
+                   .approach = Approach::Beside,
                    .begin = sitDown,
                    .end = standUp});
     addPersonVerb({.verb = "lies",
                    .word = "on",
                    .target = "bed",
                    .lasts = true,
-                   .way = Way::Beside,
+                   .approach = Approach::Beside,
                    .begin = lieDown,
                    .end = standUp});
     addPersonVerb({.verb = "falls", .is_of_rest = true, .interrupts = true, .begin = fall});
@@ -625,7 +625,7 @@ void addDeeds() {
                    .word = "at",
                    .target = "lamp1",
                    .lasts = true,
-                   .way = Way::Faces,
+                   .approach = Approach::Faces,
                    .is_of_rest = true,
                    .targets = pointTargets,
                    .aim = aimOf,
@@ -635,7 +635,7 @@ void addDeeds() {
     addPersonVerb({.verb = "reaches",
                    .target = "kettle",
                    .lasts = true,
-                   .way = Way::Beside,
+                   .approach = Approach::Beside,
                    .aim = aimOf,
                    .begin = reachFor,
                    .end = lowerArms});

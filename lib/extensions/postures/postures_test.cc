@@ -20,7 +20,7 @@
 
 #include "base/error.h"
 #include "cli/common_options.h"
-#include "cli/presence_ways.h"
+#include "cli/presence_paths.h"
 #include "extensions/postures/deeds.h"
 #include "extensions/postures/posture.h"
 #include "extensions/postures/postures_test.h"
@@ -318,7 +318,7 @@ TEST(Postures, WearTagsOnTheChest) {
         SCOPED_TRACE(posture);
         const Scene scene = sceneOf("human id=ann at=1,2 heading=90 tag=7 " + posture +
                                     "\nuwb at=-3,-2,2.4\nuwb at=4,-3,0.5\nuwb at=2,-2,1\n");
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         worlds.prepareMesh(kindOf(scene.sensors.front().model).stopped_by);
         const MovingBodies bodies(bodiesOf(scene));
         const TakerOptions options;
@@ -414,7 +414,7 @@ TEST(Postures, RobotsGoRoundBodies) {
     World world(scene, milliseconds(50));
     Command there{.verb = Verb::Goto};
     there.course.path = {{0, 1.5}};
-    ASSERT_EQ(world.findWay(0, there), "");
+    ASSERT_EQ(world.findPath(0, there), "");
     world.command(0, there);
     for (int i = 0; i < 1200; ++i) world.step();
     EXPECT_NEAR(distance(world.status(0).pose.position, Point2{0, 1.5}), 0, 0.1);
@@ -624,7 +624,7 @@ TEST(Deeds, FallsEndWays) {
 TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
     const Scene room = sceneOf("human id=ann at=0,0\n",
                                std::string(kRoom) + "cube id=cup at=2,0 size=0.1 carried=ann\n");
-    EXPECT_EQ(readWays(parseWays("wander:2,5s"), room, 7).people.size(), 2U);
+    EXPECT_EQ(readPaths(parseWays("wander:2,5s"), room, 7).people.size(), 2U);
 }
 
 TEST(Deeds, ThingsMayBecomeOthers) {
@@ -906,7 +906,7 @@ void addVerbAtOnce(const std::string& like, const std::string& name) {
         if (verb.verb != like) continue;
         PersonVerb at_once = verb;
         at_once.verb = name;
-        at_once.way = PersonVerb::Way::None;
+        at_once.way = PersonVerb::Approach::None;
         at_once.then = nullptr;
         addPersonVerb(at_once);
     }
@@ -1039,7 +1039,7 @@ class House {
         : building_(buildingOf(layout)), run_(building_, testing::optionsOf()) {
         ServerLimits limits;
         limits.source = std::make_shared<Source>();
-        for (const JoinedRoom& room : run_.rooms()) {
+        for (const RunRoom& room : run_.rooms()) {
             states_.emplace_back(*room.simulation, limits);
             room.simulation->events().want({EventKind::Unreached, EventKind::State});
             served_.states.push_back(&states_.back());

@@ -14,7 +14,7 @@ namespace {
 TEST(Postures, AreSensorsOfHomeAssistant) {
     testing::addPosturesOnce();
     const Schema& human = *sceneSchemas().find("human");
-    MqttThing thing{"ann", "human", {}};
+    MqttEntity thing{"ann", "human", {}};
     for (const char* key : {"posture", "left_arm"})
         thing.keys.push_back({key, std::string("i/ann/") + key, human.find(key)});
     const std::vector<MqttMessage> messages = discoveryOf(thing, "i");

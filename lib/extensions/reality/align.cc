@@ -49,7 +49,7 @@ class PoseResiduals {
     using JacobianType = Eigen::MatrixXd;
     enum { InputsAtCompileTime = Eigen::Dynamic, ValuesAtCompileTime = Eigen::Dynamic };
 
-    PoseResiduals(const LoggedRun& run, const Worlds& worlds, std::vector<std::size_t> scans,
+    PoseResiduals(const LoggedRun& run, const RayScenes& worlds, std::vector<std::size_t> scans,
                   MovePose move, double width)
         : run_(run), worlds_(worlds), scans_(std::move(scans)), move_(move), width_(width) {
         for (const std::size_t i : scans_) count_ += run_.scans[i].ranges().size();
@@ -111,7 +111,7 @@ class PoseResiduals {
 
   private:
     const LoggedRun& run_;
-    const Worlds& worlds_;
+    const RayScenes& worlds_;
     std::vector<std::size_t> scans_;
     MovePose move_;
     double width_;
@@ -122,7 +122,7 @@ constexpr std::array<double, 3> kWidths{0.5, 0.2, 0.1};  // metres
 
 /// Returns the best change of the poses of some scans, nullopt if too few beams return or the
 /// change does not lower the loss.
-std::optional<Eigen::VectorXd> bestMove(const LoggedRun& run, const Worlds& worlds,
+std::optional<Eigen::VectorXd> bestMove(const LoggedRun& run, const RayScenes& worlds,
                                         const std::vector<std::size_t>& scans, MovePose move) {
     Eigen::VectorXd by = Eigen::VectorXd::Zero(3);
     constexpr std::size_t kLeastReturns = 10;
@@ -201,7 +201,7 @@ void summarise(Alignment& alignment) {
 
 }  // namespace
 
-Alignment align(LoggedRun& run, const Worlds& worlds) {
+Alignment align(LoggedRun& run, const RayScenes& worlds) {
     Alignment alignment;
     if (const std::vector<std::size_t> some = someScans(run); !some.empty())
         if (const auto by = bestMove(run, worlds, some, movedAsMap)) {

@@ -24,6 +24,6 @@ struct Alignment {
 /// Levenberg and Marquardt (Eigen) through the simulation, with the robust loss of Cauchy, whose
 /// width shrinks from half a metre to 10 cm. Heights, tilt and roll stay.
 /// \pre simulate() prepared the worlds for the run
-Alignment align(LoggedRun& run, const Worlds& worlds);
+Alignment align(LoggedRun& run, const RayScenes& worlds);
 
 }  // namespace ispace

@@ -13,8 +13,8 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "env/level.h"
+#include "sense/burial.h"
 #include "sense/selection.h"
-#include "sense/warnings.h"
 
 namespace ispace {
 
@@ -332,7 +332,7 @@ LoggedRun runOf(const Log& log, const Scene& scene, const LoggedRunOptions& opti
     return run;
 }
 
-void castMeasured(const Worlds& worlds, const LoggedRun& run, const MeasuredScan& scan,
+void castMeasured(const RayScenes& worlds, const LoggedRun& run, const MeasuredScan& scan,
                   const Pose3& pose, std::span<float> expected, std::span<float> cosines) {
     constexpr double kFarthest = 1e5;  // metres, of a cloud without a limit
     const double limit = std::min(run.sensors[scan.sensor].max_range, kFarthest);
@@ -345,7 +345,7 @@ void castMeasured(const Worlds& worlds, const LoggedRun& run, const MeasuredScan
         world.cast(rays.origins, rays.directions, limit, expected, cosines);
 }
 
-void simulate(LoggedRun& run, Worlds& worlds, SurfaceFinder& surfaces) {
+void simulate(LoggedRun& run, RayScenes& worlds, SurfaceFinder& surfaces) {
     std::size_t beams = 0;
     for (const MeasuredScan& scan : run.scans) {
         beams = scan.first_beam + scan.ranges().size();

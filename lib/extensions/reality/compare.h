@@ -107,10 +107,10 @@ class SurfaceFinder {
 };
 
 /// Simulates all scans at their poses and stores the beams. Uses all cores.
-void simulate(LoggedRun& run, Worlds& worlds, SurfaceFinder& surfaces);
+void simulate(LoggedRun& run, RayScenes& worlds, SurfaceFinder& surfaces);
 
 /// Simulates one scan at a pose. \pre the worlds are prepared for it
-void castMeasured(const Worlds& worlds, const LoggedRun& run, const MeasuredScan& scan,
+void castMeasured(const RayScenes& worlds, const LoggedRun& run, const MeasuredScan& scan,
                   const Pose3& pose, std::span<float> expected, std::span<float> cosines);
 
 }  // namespace ispace

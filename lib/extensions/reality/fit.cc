@@ -260,18 +260,18 @@ std::vector<OdometryMotion> motionsOf(const Log& log) {
     std::vector<OdometryMotion> motions;
     const bool begins = std::any_of(log.odometry.begin(), log.odometry.end(),
                                     [](const LogOdometry& each) { return each.begins; });
-    struct Way {
+    struct Path {
         std::size_t from = 0, last = 0;
         OdometryMotion motion;
     };
-    std::map<std::string, Way> ways;
+    std::map<std::string, Path> ways;
     std::size_t at = 0;
     for (std::size_t i = 0; i < log.scans.size(); ++i) {
         const LogScan& scan = log.scans[i];
         if (!scan.poses.corrected || (!begins && !scan.poses.odometry)) continue;
-        const auto [known, is_first] = ways.try_emplace(scan.sensor, Way{i, i, {}});
+        const auto [known, is_first] = ways.try_emplace(scan.sensor, Path{i, i, {}});
         if (is_first) continue;
-        Way& way = known->second;
+        Path& way = known->second;
         const LogPoses &from = log.scans[way.from].poses, &last = log.scans[way.last].poses;
         way.last = i;
         const Pose2 truth = relative(floorPose(*from.corrected), floorPose(*scan.poses.corrected));
@@ -530,7 +530,7 @@ std::optional<OdometryFit> fitOdometry(const Log& log) {
     return fit;
 }
 
-std::vector<UltrasoundFit> fitUltrasound(const Log& log, const Scene& scene, Worlds& worlds) {
+std::vector<UltrasoundFit> fitUltrasound(const Log& log, const Scene& scene, RayScenes& worlds) {
     std::vector<Sensor> receivers = sensorsOf<Receiver>(scene);
     const std::vector<Sensor> tags = sensorsOf<Tag>(scene);
     std::map<std::string, std::vector<BeamSample>> samples;

@@ -61,7 +61,7 @@ struct UltrasoundFit {
 };
 /// Fits the distances that receivers measured to tags. \pre tags and receivers have their ids in
 /// the scene
-std::vector<UltrasoundFit> fitUltrasound(const Log& log, const Scene& scene, Worlds& worlds);
+std::vector<UltrasoundFit> fitUltrasound(const Log& log, const Scene& scene, RayScenes& worlds);
 
 /// Writes the fits as a layout: records without a pose for sensors that move, as comments the
 /// standard errors and what records cannot hold.

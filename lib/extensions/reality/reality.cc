@@ -72,7 +72,7 @@ class RealityOptions final : public OptionGroup {
         const Scene& scene = scene_input.scene;
         const Log log = readLog(log_);
         LoggedRunOptions options{.select = select_, .model = modelOf()};
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         std::vector<UltrasoundFit> ultrasound;
         if (!fit_.empty()) ultrasound = fitUltrasound(log, scene, worlds);
         LoggedRun logged;

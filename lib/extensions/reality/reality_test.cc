@@ -75,7 +75,7 @@ Log logOf(const Scene& scene, const std::vector<Pose2>& poses, const Laser& lase
     return log;
 }
 
-LoggedRun simulated(const Log& log, const Scene& scene, Worlds& worlds) {
+LoggedRun simulated(const Log& log, const Scene& scene, RayScenes& worlds) {
     LoggedRun run = runOf(log, scene, {});
     SurfaceFinder surfaces(scene.environment);
     simulate(run, worlds, surfaces);
@@ -89,7 +89,7 @@ TEST(Reality, ALogOfTheSameRoomHasTheNoiseOfTheDevice) {
     device.laser.noise.bias = 0.01;
     device.laser.noise.dropout = 0.1;
     const Log log = logOf(scene, loopOfPoses(60), device.laser, 1);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const LoggedRun run = simulated(log, scene, worlds);
     const RealityReport report = measureReality(log, run, scene.environment, {});
     EXPECT_EQ(report.scans, 60U);
@@ -131,7 +131,7 @@ TEST(Reality, ALogWithoutReturnsMeetsNoRequirement) {
     Log log = logOf(scene, loopOfPoses(5), device.laser, 1);
     for (LogScan& scan : log.scans)
         for (float& range : scan.ranges) range = kNoReturn;
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const LoggedRun run = simulated(log, scene, worlds);
     const RealityReport report = measureReality(log, run, scene.environment, {});
     EXPECT_EQ(report.residuals, 0U);
@@ -156,7 +156,7 @@ TEST(Reality, PosesAreAlignedToThePlan) {
         scan.poses.corrected->heading =
             scan.poses.corrected->heading + Angle::degrees(turn(random));
     }
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     LoggedRun run = simulated(log, scene, worlds);
     const Alignment alignment = align(run, worlds);
     EXPECT_EQ(alignment.kept, 0U);
@@ -183,7 +183,7 @@ TEST(Reality, APlanIsWrongWhereScansAgreeAndNotWherePeopleWalk) {
         Log one = logOf(room, {poses[i]}, device.laser, i);
         log.scans.push_back(std::move(one.scans.front()));
     }
-    Worlds worlds(plan.environment);
+    RayScenes worlds(plan.environment);
     const LoggedRun run = simulated(log, plan, worlds);
     const RealityReport report = measureReality(log, run, plan.environment, {});
     std::size_t added = 0, gone = 0;
@@ -217,7 +217,7 @@ TEST(Reality, AWallThatStandsElsewhereIsAMove) {
     LoggedLaser device;
     device.laser.noise.sigma = {0.01, 0, 0};
     const Log log = logOf(room, loopOfPoses(40), device.laser, 3);
-    Worlds worlds(plan.environment);
+    RayScenes worlds(plan.environment);
     const LoggedRun run = simulated(log, plan, worlds);
     const RealityReport report = measureReality(log, run, plan.environment, {});
     ASSERT_EQ(report.errors.moves.size(), 1U) << realityText(report, plan.environment);
@@ -235,7 +235,7 @@ TEST(Reality, ASensorThatStandsStillHasThePoseOfTheLayout) {
     LoggedLaser device;
     Log log = logOf(scene, {{{2, 2}, Angle::degrees(30)}}, device.laser, 1);
     log.scans.front().poses.corrected.reset();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const LoggedRun run = simulated(log, scene, worlds);
     EXPECT_TRUE(run.sensors.front().stands);
     for (const MeasuredBeam& beam : run.beams) EXPECT_EQ(beam.measured, beam.expected);
@@ -284,7 +284,7 @@ TEST(Reality, BeamsOfARobotThatTurnsHaveTheirTimes) {
         }
         log.scans.push_back(std::move(scan));
     }
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const LoggedRun run = simulated(log, scene, worlds);
     EXPECT_TRUE(run.scans.front().motion);
     for (std::size_t i = 0; i + 1 < run.scans.size(); ++i)
@@ -366,7 +366,7 @@ TEST(BeamFit, TheNoiseOfASimulatedDeviceLiesInItsIntervals) {
     constexpr int kSeeds = 20;
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
         const Log log = logOf(scene, loopOfPoses(30), device.laser, seed);
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const LoggedRun run = simulated(log, scene, worlds);
         const std::vector<SensorFit> fits = fitSensors(run);
         ASSERT_EQ(fits.size(), 1U);
@@ -399,7 +399,7 @@ TEST(BeamFit, LossesByIncidenceAreFound) {
     noise.graze_from = Angle::degrees(50);
     noise.graze_to = Angle::degrees(80);
     const Log log = logOf(scene, loopOfPoses(60), device.laser, 3);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const SensorFit fit = fitSensors(simulated(log, scene, worlds)).front();
     ASSERT_TRUE(fit.dropout.graze);
     EXPECT_NEAR(fit.dropout.graze->first.degrees(), 50, 3);
@@ -412,7 +412,7 @@ TEST(Fit, ItsFileIsALayoutWhoseSensorHasTheNoise) {
     LoggedLaser device;
     device.laser.noise.sigma = {0.03, 0, 0};
     const Log log = logOf(scene, loopOfPoses(30), device.laser, 1);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const LoggedRun run = simulated(log, scene, worlds);
     const std::string text =
         fittedLayout(fitSensors(run), {}, {}, run, scene, "scan room.env --against a.log");
@@ -539,7 +539,7 @@ TEST(Reality, OnCsailTheRoomOfTheEvenScansHoldsForTheOddOnes) {
                  ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
     const Document room = readDocument(folder.file("map.yaml"), {}, sceneSchemas());
     const Scene scene = makeScene(room, nullptr, {});
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     LoggedRun run = simulated(odd, scene, worlds);
     RealityReport report = measureReality(odd, run, scene.environment, {});
     RecordProperty("inliers", std::to_string(report.inliers));

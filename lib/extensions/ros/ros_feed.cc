@@ -31,7 +31,7 @@ std::shared_ptr<const std::string> RosMessage::cbor() const {
 RosFeed::RosFeed(ServerState& state, RosScenery scenery)
     : state_(&state), scenery_(std::move(scenery)), sources_(scenery_.sources) {
     sources_.push_back(liftTopics());
-    for (const JoinedRoom& room : state.rooms().worlds->rooms())
+    for (const RunRoom& room : state.rooms().worlds->rooms())
         worlds_.push_back({.id = room.id, .simulation = room.simulation});
     for (ServerState* const each : state.rooms().states) rooms_.push_back({.state = each});
     sync();

@@ -226,7 +226,7 @@ std::optional<RosOrders::Target> RosOrders::targetOf(const std::string& robot,
         tell_("the pose of " + robot + " must be numbers");
         return {};
     }
-    const JoinedWorlds& worlds = *state_->rooms().worlds;
+    const Worlds& worlds = *state_->rooms().worlds;
     const auto rooms = worlds.rooms();
     const bool is_in_map = pose.frame.empty() || pose.frame == kRosWorld;
     struct Found {

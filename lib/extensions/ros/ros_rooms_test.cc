@@ -17,7 +17,7 @@
 #include "extensions/ros/ros_orders.h"
 #include "extensions/ros/ros_parameters.h"
 #include "extensions/ros/ros_text.h"
-#include "sim/joined_worlds.h"
+#include "sim/worlds.h"
 #include "support/test_layout.h"
 #include "support/test_source.h"
 
@@ -33,7 +33,7 @@ constexpr const char* kFixed = "laser id=l at=-3,-2 fov=4 step=2 range=0.1,7.002
 
 /// Two storeys in steps of 0.1 s, the upper one turned and moved, and the cabin of a lift. The
 /// robot begins on the lower one.
-class ThreeRooms final : public JoinedWorlds {
+class ThreeRooms final : public Worlds {
   public:
     ThreeRooms() {
         simulations_[0].lead(simulations_[1]);
@@ -56,7 +56,7 @@ class ThreeRooms final : public JoinedWorlds {
     LiftState lift{.id = "l1", .storey = "ground", .riders = {}, .calls = {}};
     std::vector<std::string> calls;  ///< of call()
 
-    [[nodiscard]] std::span<const JoinedRoom> rooms() const override { return rooms_; }
+    [[nodiscard]] std::span<const RunRoom> rooms() const override { return rooms_; }
     [[nodiscard]] std::optional<std::size_t> roomOf(std::string_view mover) const override {
         return mover == "ground/r1" ? std::optional(at_) : std::nullopt;
     }
@@ -70,7 +70,7 @@ class ThreeRooms final : public JoinedWorlds {
         if (room == 2) return {};
         return {{.id = "l1", .kind = "lift", .outline = {}}};
     }
-    [[nodiscard]] std::vector<PlannedWay> plannedWays(std::size_t /*room*/) const override {
+    [[nodiscard]] std::vector<PlannedPath> plannedPaths(std::size_t /*room*/) const override {
         return {};
     }
     TripAnswer travel(const std::string& /*mover*/, TripPlan /*plan*/) override { return {}; }
@@ -114,7 +114,7 @@ class ThreeRooms final : public JoinedWorlds {
     Simulation simulations_[3] = {Simulation(worlds_[0], {}, {Clock::Kind::Step, 1}, {}),
                                   Simulation(worlds_[1], {}, {Clock::Kind::Fast, 1}, {}),
                                   Simulation(worlds_[2], {}, {Clock::Kind::Fast, 1}, {})};
-    std::vector<JoinedRoom> rooms_ = {
+    std::vector<RunRoom> rooms_ = {
         {"ground", &simulations_[0]}, {"upper", &simulations_[1]}, {"l1", &simulations_[2]}};
     std::vector<Observer> observers_;
     std::size_t at_ = 0;

@@ -9,14 +9,14 @@
 
 #include "extensions/ros/ros_topics.h"
 #include "sense/formats/ros_types.h"
-#include "sim/joined_worlds.h"
+#include "sim/worlds.h"
 
 namespace ispace {
 
 /// The worlds of a run between two steps.
 struct RosRun {
     std::span<const RosRoom> rooms;
-    const JoinedWorlds& worlds;
+    const Worlds& worlds;
 
     [[nodiscard]] std::uint64_t now() const { return rosTimeOf(rooms.front().world().time()); }
 };

@@ -17,8 +17,8 @@
 
 #include "sense/formats/reading_fields.h"
 #include "sense/formats/ros_messages.h"
-#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
+#include "sim/worlds.h"
 
 namespace ispace {
 

@@ -6,12 +6,12 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scene/run/people_ways.h"
+#include "scene/run/people_paths.h"
 
 namespace ispace {
 
 double PeopleMoments::duration(std::size_t moment) const {
-    if (times.size() < 2) return kWayStep;
+    if (times.size() < 2) return kPathStep;
     const std::size_t begin = std::min(moment, times.size() - 2);
     return times[begin + 1] - times[begin];
 }
@@ -26,7 +26,7 @@ void MomentSampler::add(const std::string& person, double time, Point2 place) {
     constexpr double kFastest = 12;      // m/s: no person runs faster
     constexpr double kTolerance = 1e-9;  // s
     constexpr std::size_t kMaxPlaces = 2'000'000;
-    if (times_.empty() || time >= times_.back() + kWayStep - kTolerance)
+    if (times_.empty() || time >= times_.back() + kPathStep - kTolerance)
         times_.push_back(time);
     else if (time != times_.back())
         return;
@@ -56,7 +56,7 @@ PeopleMoments MomentSampler::finish() {
     PeopleMoments moments;
     moments.times = std::move(times_);
     moments.places.reserve(places_);
-    for (Way& way : ways_) {
+    for (Path& way : ways_) {
         for (PersonMoment& place : way.places) {
             place.person = moments.people.size();
             moments.places.push_back(place);

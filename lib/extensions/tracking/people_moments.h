@@ -21,7 +21,7 @@ struct PersonMoment {
     bool continues = false;
 };
 
-/// Positions of people at moments at least kWayStep apart.
+/// Positions of people at moments at least kPathStep apart.
 struct PeopleMoments {
     std::vector<std::string> people;
     std::vector<double> times;         ///< seconds, ascending
@@ -37,19 +37,19 @@ struct PeopleMoments {
 class MomentSampler {
   public:
     /// Adds a position of a person. All people of a moment come one after another, and times
-    /// ascend. Ignores moments less than kWayStep after the last one used.
+    /// ascend. Ignores moments less than kPathStep after the last one used.
     /// \throws UsageError for more than 2 million places
     void add(const std::string& person, double time, Point2 place);
     /// Returns the moments; the sampler is then empty.
     [[nodiscard]] PeopleMoments finish();
 
   private:
-    struct Way {
+    struct Path {
         std::string id;
         std::vector<PersonMoment> places = {};
     };
     std::vector<double> times_;
-    std::vector<Way> ways_;
+    std::vector<Path> ways_;
     std::size_t last_ = 0;    // of ways_
     std::size_t places_ = 0;  // of all ways
 };

@@ -14,7 +14,7 @@
 #include "coverage/crowd.h"
 #include "geom/tolerance.h"
 #include "scene/bodies.h"
-#include "scene/run/people_ways.h"
+#include "scene/run/people_paths.h"
 #include "sense/motion_sense.h"
 #include "sense/scan.h"
 
@@ -141,7 +141,8 @@ bool TrackDemand::isHidden(std::size_t place, Point3 from, double height) const 
     });
 }
 
-std::vector<std::uint8_t> TrackDemand::sightOf(const Sensor& sensor, const Worlds& worlds) const {
+std::vector<std::uint8_t> TrackDemand::sightOf(const Sensor& sensor,
+                                               const RayScenes& worlds) const {
     const Point3 origin = sensor.pose.position;
     const bool is_slice = scansSlice(sensor);
     const std::vector<PersonMoment>& places = moments_.places;

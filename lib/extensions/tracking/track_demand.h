@@ -62,7 +62,7 @@ class TrackDemand : public Demand {
     void mustServe(const SensorModel& model, const std::string& id) const override;
     [[nodiscard]] bool isServedBy(const Sensor& sensor) const override;
     [[nodiscard]] std::vector<std::uint8_t> sightOf(const Sensor& sensor,
-                                                    const Worlds& worlds) const override;
+                                                    const RayScenes& worlds) const override;
     using Demand::servedBy;
     [[nodiscard]] CellSet servedBy(const Sensor& sensor,
                                    const std::vector<std::uint8_t>& sight) const override;

@@ -2,7 +2,7 @@
 #include "extensions/tracking/track_objective.h"
 
 #include "arrange/arrange.h"
-#include "cli/presence_ways.h"
+#include "cli/presence_paths.h"
 #include "extensions/tracking/track_demand.h"
 #include "scene/run/run_reader.h"
 
@@ -38,15 +38,15 @@ class TrackObjective : public ObjectiveGroup {
         const CommonOptions& common, std::vector<std::string>& files) const override {
         LossRule loss = loss_;
         loss.plane = how.plane;
-        const std::vector<RoomWays> ways = waysIn(site, "--ways", ways_, common.seed, how.plane);
+        const std::vector<RoomPaths> ways = waysIn(site, "--ways", ways_, common.seed, how.plane);
         std::vector<std::shared_ptr<const Demand>> demands;
         for (std::size_t i = 0; i < ways.size(); ++i) {
             MomentSampler sampler;
             if (!ways[i].isEmpty())
-                visitWays(ways[i].choice, *site.rooms()[i], ways[i].seed,
-                          [&sampler](const std::string& id, double time, Point2 place) {
-                              sampler.add(id, time, place);
-                          });
+                visitPaths(ways[i].choice, *site.rooms()[i], ways[i].seed,
+                           [&sampler](const std::string& id, double time, Point2 place) {
+                               sampler.add(id, time, place);
+                           });
             if (!ways_.record.empty()) {
                 const RecordedFiles record(ways[i].choice.record);
                 files.push_back(record.robots);
@@ -58,7 +58,7 @@ class TrackObjective : public ObjectiveGroup {
     }
 
   private:
-    WaysChoice ways_ = parseWays("wander:4,10min");
+    PathsChoice ways_ = parseWays("wander:4,10min");
     LossRule loss_ = {};
 };
 

@@ -293,11 +293,11 @@ std::size_t appendReading(std::string& out, const Sensor& sensor, const SensorRe
 namespace {
 
 /// Maximum points of a way in a frame: the next ones.
-constexpr std::size_t kMaxWay = 100;
+constexpr std::size_t kMaxPath = 100;
 
-void appendWay(std::string& out, std::span<const Point2> way) {
+void appendPath(std::string& out, std::span<const Point2> way) {
     char separator = '[';
-    for (const Point2 point : way.first(std::min(way.size(), kMaxWay))) {
+    for (const Point2 point : way.first(std::min(way.size(), kMaxPath))) {
         out += std::exchange(separator, ',');
         append(out, fixed(point.x));
         out += ',';
@@ -307,22 +307,22 @@ void appendWay(std::string& out, std::span<const Point2> way) {
 }
 
 /// The ways of a mover.
-struct MoverWays {
+struct MoverPaths {
     std::span<const Point2> now;                 ///< from where it is; empty if it is elsewhere
     std::vector<std::span<const Point2>> later;  ///< after passages
 };
 
-std::string wayText(const std::string& mover, const MoverWays& ways) {
+std::string wayText(const std::string& mover, const MoverPaths& ways) {
     std::string out = "{\"id\":";
     appendText(out, mover);
     out += ",\"way\":";
-    appendWay(out, ways.now);
+    appendPath(out, ways.now);
     if (!ways.later.empty()) {
         char separator = '[';
         out += ",\"later\":";
         for (const std::span<const Point2> way : ways.later) {
             out += std::exchange(separator, ',');
-            appendWay(out, way);
+            appendPath(out, way);
         }
         out += ']';
     }
@@ -355,15 +355,15 @@ void appendElement(std::string& list, const std::string& element) {
 
 }  // namespace
 
-std::string WebFrames::newWays() {
+std::string WebFrames::newPaths() {
     const World& world = simulation_->world();
-    std::map<std::string, MoverWays> ways;
+    std::map<std::string, MoverPaths> ways;
     for (std::size_t i = 0; i < world.movers().size(); ++i)
         if (const auto ahead = world.wayAhead(i); !ahead.empty())
             ways[world.movers()[i].id].now = ahead;
-    const std::vector<PlannedWay> planned =
-        facts_.planned ? facts_.planned() : std::vector<PlannedWay>();
-    for (const PlannedWay& way : planned) ways[way.mover].later.emplace_back(way.points);
+    const std::vector<PlannedPath> planned =
+        facts_.planned ? facts_.planned() : std::vector<PlannedPath>();
+    for (const PlannedPath& way : planned) ways[way.mover].later.emplace_back(way.points);
     std::map<std::string, std::string> texts;
     std::string changed;
     for (const auto& [mover, its] : ways) {
@@ -384,7 +384,7 @@ void WebFrames::look(WallTime now) {
     const World& world = simulation_->world();
     const bool stepped = world.steps() != steps_ || world.changes() != version_;
     std::string state = stateText();
-    std::string ways = newWays();
+    std::string ways = newPaths();
     if (stepped || state != state_ || !ways.empty()) {
         steps_ = world.steps();
         if (std::exchange(version_, world.changes()) != world.changes())

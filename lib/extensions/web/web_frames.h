@@ -11,8 +11,8 @@
 #include "scene/run/run_marks.h"
 #include "scene/scene.h"
 #include "server/server_state.h"
-#include "sim/joined_worlds.h"
 #include "sim/simulation.h"
+#include "sim/worlds.h"
 
 namespace ispace {
 
@@ -26,7 +26,7 @@ struct WebSceneFacts {
     /// Writes the mesh of a room as GLB; may be null.
     std::function<std::string(const Scene& scene)> mesh = {};
     /// Returns the ways of trips that will lead through the room; may be null.
-    std::function<std::vector<PlannedWay>()> planned = {};
+    std::function<std::vector<PlannedPath>()> planned = {};
 };
 
 /// Writes the static data of a scene for browsers, see share/schemas/web-scene.json: the plan (see
@@ -80,7 +80,7 @@ class WebFrames {
     [[nodiscard]] std::string stateText() const;
     [[nodiscard]] std::string withReadings(bool all);
     /// Updates ways_. \returns those that have changed
-    std::string newWays();
+    std::string newPaths();
     [[nodiscard]] bool isNew(std::size_t sensor) const;
 
     const Simulation *simulation_, *leader_;

@@ -85,7 +85,7 @@ TEST(WebFrames, HaveWaysUntilTheyEnd) {
     Watched world;
     EXPECT_TRUE(has(world.next(), "\"ways\":[],"));
     Command command = {Verb::Goto, 0, {.path = {{1, 0}}}};
-    ASSERT_EQ(world.world.findWay(0, command), "");
+    ASSERT_EQ(world.world.findPath(0, command), "");
     world.world.command(0, command);
     const std::string way = "\"ways\":[{\"id\":\"r1\",\"way\":[1000,0]}],";
     EXPECT_TRUE(has(world.next(), way)) << "before the next step";
@@ -101,7 +101,7 @@ TEST(WebFrames, HaveWaysUntilTheyEnd) {
 
 TEST(WebFrames, HaveTheWaysOfTripsThatComeLater) {
     TestWorld world({Clock::Kind::Step, 1});
-    std::vector<PlannedWay> planned = {{"r9", {{1, 2}, {3, 4}}}};
+    std::vector<PlannedPath> planned = {{"r9", {{1, 2}, {3, 4}}}};
     WebFrames frames(world.simulation, world.simulation,
                      {.title = "upper", .planned = [&] { return planned; }});
     frames.look(WallTime{} + std::chrono::hours(1));

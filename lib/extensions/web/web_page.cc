@@ -195,7 +195,7 @@ WebPage::WebPage(ServerState& state, const std::string& title, const WebPageOpti
         facts.title = title;
         if (!id.empty()) facts.title.append(", ").append(id);
         facts.passages = worlds->passageOutlines(i);
-        facts.planned = [of = worlds, i] { return of->plannedWays(i); };
+        facts.planned = [of = worlds, i] { return of->plannedPaths(i); };
         rooms_.push_back({&one, WebFrames(one.simulation(), state.simulation(), facts)});
     }
 }

@@ -47,8 +47,8 @@ class MjpegSession : public WireSession {
     std::string id_;
     std::string head_;
     std::optional<PictureRequest> request_;
-    std::shared_ptr<const PictureFiles::Asked> coming_;  // requested picture
-    std::shared_ptr<const PictureFile> sent_;            // picture sent last
+    std::shared_ptr<const PictureFiles::PendingPicture> coming_;  // requested picture
+    std::shared_ptr<const PictureFile> sent_;                     // picture sent last
 };
 
 /// The row of `--mjpeg`.

@@ -31,16 +31,17 @@ std::shared_ptr<const PictureFile> fileOf(const Sensor& sensor, const SensorRead
 
 }  // namespace
 
-std::shared_ptr<const PictureFiles::Asked> PictureFiles::newest(World& world, std::size_t sensor,
-                                                                WallTime now, bool at_once,
-                                                                const Doer& does) {
+std::shared_ptr<const PictureFiles::PendingPicture> PictureFiles::newest(World& world,
+                                                                         std::size_t sensor,
+                                                                         WallTime now, bool at_once,
+                                                                         const Doer& does) {
     Entry& entry = entries_[{&world, world.sensors()[sensor].id}];
     const std::int64_t seq = world.period(sensor), changes = world.changes();
     const bool is_made = entry.asked && (entry.asked->file || entry.asked->failure);
     const bool is_newest = entry.asked && entry.changes == changes && entry.seq == seq;
     if (is_newest || (entry.asked && !is_made && entry.changes == changes)) return entry.asked;
     if (!at_once && (now < next_ || now < entry.next)) return nullptr;
-    entry = {std::make_shared<Asked>(), seq, changes, now + kMinGap};
+    entry = {std::make_shared<PendingPicture>(), seq, changes, now + kMinGap};
     // Do not use `entry` below: the other thread may finish first.
     const auto asked = entry.asked;
     make(world, sensor, entry, does);

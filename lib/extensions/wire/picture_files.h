@@ -35,19 +35,19 @@ class PictureFiles {
                                     std::function<void(const std::exception_ptr&)> deliver)>;
 
     /// A requested picture.
-    struct Asked {
+    struct PendingPicture {
         std::shared_ptr<const PictureFile> file;  ///< null until it is encoded
         std::exception_ptr failure;               ///< set if capturing or encoding failed
     };
     /// Requests the newest picture: captured now, or shared with a request that is still pending.
     /// Empty if the sensor must wait for its turn: ask again. `at_once` skips that wait. Fails with
     /// FormatError if OpenCV's imgcodecs, which write JPEG, cannot be loaded.
-    std::shared_ptr<const Asked> newest(World& world, std::size_t sensor, WallTime now,
-                                        bool at_once, const Doer& does);
+    std::shared_ptr<const PendingPicture> newest(World& world, std::size_t sensor, WallTime now,
+                                                 bool at_once, const Doer& does);
 
   private:
     struct Entry {
-        std::shared_ptr<Asked> asked;
+        std::shared_ptr<PendingPicture> asked;
         std::int64_t seq = 0;      // of the sensor's period
         std::int64_t changes = 0;  // change count of the world at the request
         WallTime next{};

@@ -244,7 +244,7 @@ TEST(CameraRegion, DistortionThatIsNoneChangesNothing) {
 
 TEST(CameraRegion, CellsAreThoseInTheRegion) {
     const Scene scene = sceneOf(kFurnished);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const VisibleArea sight(scene.environment, 0, &worlds);
     const Grid grid{scene.environment.limits(), 120, 80};
     for (const char* const lens :

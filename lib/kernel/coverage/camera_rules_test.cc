@@ -29,7 +29,7 @@ std::string domeAt(const std::string& id, const std::string& at) {
 }
 
 Coverage measuredFor(const Scene& scene, double density = 0) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     CoverageOptions options;
     options.cells = CellSize{0.25};
     options.density = density;
@@ -238,7 +238,7 @@ TEST(CameraRules, FacingSharesMatchPoints) {
     const double share = measureFacing(scene, coverage, rules).front().share.value();
     // Without the pillar's shadows it would be larger; count points of the views.
     int inside = 0, all = 0;
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     CoverageOptions options;
     options.cells = CellSize{0.02};
     const Coverage fine = measureCoverage(scene, worlds, options);

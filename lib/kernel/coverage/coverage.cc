@@ -164,7 +164,7 @@ class Viewer {
     /// \param only_regions computes neither cells, beams nor classes of density
     /// \param known of an equal environment, see exactShares()
     /// \param before a scene with views to take over, see measureChanged()
-    Viewer(const Scene& scene, Worlds& worlds, const Grid& grid, const CoverageOptions& options,
+    Viewer(const Scene& scene, RayScenes& worlds, const Grid& grid, const CoverageOptions& options,
            std::size_t most_edges, bool only_regions = false, const VisibleArea* known = nullptr,
            const MeasuredScene& before = {})
         : scene_(scene),
@@ -345,7 +345,7 @@ class Viewer {
     }
 
     const Scene& scene_;
-    Worlds& worlds_;
+    RayScenes& worlds_;
     const Grid& grid_;
     const CoverageOptions& options_;
     std::size_t most_;
@@ -519,7 +519,7 @@ void addOutside(std::span<const std::shared_ptr<const OutsideView>> outside, std
 }
 
 /// \param scene with the sensors outside after its own
-Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
+Coverage measure(const Scene& scene, const Scene& own, RayScenes& worlds,
                  const CoverageOptions& options,
                  std::span<const std::shared_ptr<const OutsideView>> outside,
                  const MeasuredScene& before = {}, Progress* progress = nullptr) {
@@ -585,17 +585,17 @@ Coverage measure(const Scene& scene, const Scene& own, Worlds& worlds,
 
 }  // namespace
 
-Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+Coverage measureCoverage(const Scene& scene, RayScenes& worlds, const CoverageOptions& options,
                          Progress* progress) {
     return measure(scene, scene, worlds, options, {}, {}, progress);
 }
 
-Coverage measureChanged(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+Coverage measureChanged(const Scene& scene, RayScenes& worlds, const CoverageOptions& options,
                         const MeasuredScene& before) {
     return measure(scene, scene, worlds, options, {}, before);
 }
 
-std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
+std::optional<Coverage> exactShares(const Scene& scene, RayScenes& worlds,
                                     const CoverageOptions& options, const VisibleArea* sight) {
     if (!options.exact) return std::nullopt;
     const Environment& environment = scene.environment;
@@ -633,7 +633,7 @@ std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
     return coverage;
 }
 
-Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+Coverage measureWithOutside(const Scene& scene, RayScenes& worlds, const CoverageOptions& options,
                             std::span<const std::shared_ptr<const OutsideView>> outside,
                             Progress* progress) {
     if (outside.empty()) return measureCoverage(scene, worlds, options, progress);

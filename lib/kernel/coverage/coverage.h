@@ -211,7 +211,7 @@ constexpr std::uint64_t densityZoneMark(std::size_t zone) {
 /// Computes the coverage of all placed lasers, rangers, cameras and ultrasonic receivers of a
 /// scene. Deterministic for any number of threads. \throws UsageError as makeTarget
 /// \param progress receives the views, then steps of the areas; null: none
-Coverage measureCoverage(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+Coverage measureCoverage(const Scene& scene, RayScenes& worlds, const CoverageOptions& options,
                          Progress* progress = nullptr);
 
 /// Sets report.comparison of `coverage`. \pre both were measured with the same options in the room

@@ -361,7 +361,7 @@ TEST(ExactCoverage, ZonesHaveAreasWithoutExactMetrics) {
 TEST(GridOfBeams, CellsLieAmongTheEndsOfBeams) {
     const auto report = [](const std::string& laser) {
         const Scene scene = sceneOf("ispace size=12,12\n" + laser);
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         return measureCoverage(scene, worlds,
                                {.cells = CellCount{400, 400}, .cells_by = CellRule::Beams})
             .report;
@@ -424,7 +424,7 @@ TEST(CoverageExact, CrowdsOfViewsHaveTheFiguresOfCells) {
     const auto measured = [&scene](std::optional<std::uint64_t> max_work) {
         CoverageOptions options{.keep_depths = false};
         options.max_work = max_work;
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         return measureCoverage(scene, worlds, options);
     };
     const Coverage by_cells = measured(150'000), whole = measured(std::nullopt);
@@ -453,7 +453,7 @@ TEST(MeasureChanged, HasTheFiguresOfAMeasureOfTheWhole) {
                                  "uwb id=u1 at=1,1,2\nuwb id=u2 at=7,1,2\ncamera id=c at=2,2,2 "
                                  "tilt=-40\nzone id=z at=2,2 size=1,1\n");
     const CoverageOptions options;
-    Worlds worlds(before.environment);
+    RayScenes worlds(before.environment);
     const Coverage known = measureCoverage(before, worlds, options);
     const std::vector<std::vector<Edit>> changes = {
         {parseEdit(Edit::Kind::Add, "uwb id=u3 at=4,1,2")},
@@ -461,7 +461,7 @@ TEST(MeasureChanged, HasTheFiguresOfAMeasureOfTheWhole) {
         {parseEdit(Edit::Kind::Set, "c.tilt=-60"), parseEdit(Edit::Kind::Add, "cube at=4,2")}};
     for (const std::vector<Edit>& edits : changes) {
         const Scene after = changedBy(before, edits);
-        Worlds own(after.environment), others(after.environment);
+        RayScenes own(after.environment), others(after.environment);
         const Coverage changed = measureChanged(after, own, options, {&before, &known});
         const Coverage whole = measureCoverage(after, others, options);
         EXPECT_EQ(changed.report.coverage.exact, whole.report.coverage.exact);
@@ -481,13 +481,13 @@ TEST(MeasureChanged, TakesTheViewsOfSensorsThatStay) {
     const Scene before =
         sceneOf("ispace size=8,6\nuwb id=u1 at=-3,0,2 range=4\nlaser id=l1 at=3,0 range=2\n");
     const CoverageOptions options;
-    Worlds worlds(before.environment);
+    RayScenes worlds(before.environment);
     Coverage known = measureCoverage(before, worlds, options);
     for (const SensorView& view : known.sensors) EXPECT_GT(view.cells.count(), 0U) << view.id;
     for (SensorView& view : known.sensors) view.cells = CellSet(view.cells.size());  // a mark
     const auto cells_of = [&](const std::string& edit, Edit::Kind kind, const std::string& id) {
         const Scene after = changedBy(before, {parseEdit(kind, edit)});
-        Worlds own(after.environment);
+        RayScenes own(after.environment);
         const Coverage changed = measureChanged(after, own, options, {&before, &known});
         for (const SensorView& view : changed.sensors)
             if (view.id == id) return view.cells.count();

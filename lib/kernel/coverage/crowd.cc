@@ -124,7 +124,7 @@ SampledFigures measureCrowds(const Scene& scene, const CoverageReport& planned,
     progress.begin("crowds", static_cast<std::int64_t>(crowds.size()));
     const auto measured = [&](int sample) {
         const Scene filled = withCrowd(scene, crowds[static_cast<std::size_t>(sample)]);
-        Worlds worlds(filled.environment);
+        RayScenes worlds(filled.environment);
         return measureCoverage(filled, worlds, options);
     };
     SampledFigures sampled =

@@ -28,7 +28,7 @@ CoverageOptions fewCells() {
 }
 
 Coverage measuredIn(const Scene& scene) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, fewCells());
 }
 

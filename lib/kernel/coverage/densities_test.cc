@@ -23,7 +23,7 @@ constexpr std::size_t kClasses = 11, kRecognise = 3, kIdentify = 4;
 
 Coverage measured(const std::string& lines, CoverageOptions options = {}) {
     const Scene scene = sceneOf(lines);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     if (std::holds_alternative<RoomCells>(options.cells)) options.cells = CellSize{0.05};
     return measureCoverage(scene, worlds, options);
 }

@@ -12,7 +12,7 @@ namespace ispace {
 /// to the same values, but no cells, beams, pieces, pictures or classes of density. Empty if a
 /// region or a share is not known exactly, and with receivers.
 /// \param sight of an equal environment and the same plane, which may know regions; null: none
-std::optional<Coverage> exactShares(const Scene& scene, Worlds& worlds,
+std::optional<Coverage> exactShares(const Scene& scene, RayScenes& worlds,
                                     const CoverageOptions& options,
                                     const VisibleArea* sight = nullptr);
 
@@ -24,7 +24,7 @@ struct MeasuredScene {
 
 /// Returns the same as measureCoverage(). Takes the views of sensors that the scene has in common
 /// with `before`, if their rooms share their data: those of changed sensors alone are computed.
-Coverage measureChanged(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+Coverage measureChanged(const Scene& scene, RayScenes& worlds, const CoverageOptions& options,
                         const MeasuredScene& before);
 
 }  // namespace ispace

@@ -82,7 +82,7 @@ bool FloorSight::isTangent(const Corner& corner, Point2 towards) const {
     return !(one > slack && other < -slack) && !(one < -slack && other > slack);
 }
 
-std::vector<Point2> FloorSight::shortestWay(Point2 from, Point2 to) const {
+std::vector<Point2> FloorSight::shortestPath(Point2 from, Point2 to) const {
     if (sees(from, to)) return {from, to};
     const std::size_t n = corners_.size();
     std::vector<double> lengths(n, kFar);
@@ -160,7 +160,7 @@ class ExposureSearch {
         end_tree_ = BoxTree(boxes);
     }
 
-    std::optional<ExposedWay> run() {
+    std::optional<ExposedPath> run() {
         const double longest = floor_.longest();
         for (double limit = std::min(kFirstLimit, longest);; limit = std::min(2 * limit, longest)) {
             if (const auto goal = searchWithin(limit)) return wayTo(*goal);
@@ -262,8 +262,8 @@ class ExposureSearch {
         open_.emplace(exposed, next);
     }
 
-    [[nodiscard]] ExposedWay wayTo(std::size_t goal) const {
-        ExposedWay way{nodes_[goal].exposed, {}, goal, goal};
+    [[nodiscard]] ExposedPath wayTo(std::size_t goal) const {
+        ExposedPath way{nodes_[goal].exposed, {}, goal, goal};
         const auto region = [this](std::size_t node) {
             return isCorner(node) ? std::nullopt : std::optional(node);
         };
@@ -292,9 +292,9 @@ class ExposureSearch {
 
 }  // namespace
 
-std::optional<ExposedWay> leastExposedWay(const FloorSight& floor, std::span<const Region> hidden,
-                                          const std::vector<bool>& starts,
-                                          const std::vector<bool>& goals) {
+std::optional<ExposedPath> leastExposedPath(const FloorSight& floor, std::span<const Region> hidden,
+                                            const std::vector<bool>& starts,
+                                            const std::vector<bool>& goals) {
     return ExposureSearch(floor, hidden, starts, goals).run();
 }
 

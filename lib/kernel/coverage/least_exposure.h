@@ -29,7 +29,7 @@ class FloorSight {
     [[nodiscard]] bool sees(Point2 a, Point2 b) const;
     [[nodiscard]] const std::vector<Corner>& corners() const { return corners_; }
     /// Finds the shortest way, both ends included; empty without one. A* over the corners.
-    [[nodiscard]] std::vector<Point2> shortestWay(Point2 from, Point2 to) const;
+    [[nodiscard]] std::vector<Point2> shortestPath(Point2 from, Point2 to) const;
     /// Returns false if no shortest way bends about a corner on its way to this point.
     [[nodiscard]] bool isTangent(const Corner& corner, Point2 towards) const;
     /// Returns a length that no shortest way exceeds.
@@ -50,7 +50,7 @@ struct ExposedLeg {
 };
 
 /// The way with the least exposed length.
-struct ExposedWay {
+struct ExposedPath {
     double exposed = 0;  ///< metres
     std::vector<ExposedLeg> legs;
     std::size_t first = 0, last = 0;  ///< the hidden regions in which it begins and ends
@@ -67,8 +67,8 @@ struct ExposedWay {
 /// \param hidden disjoint parts of the floor, which may touch
 /// \param starts, goals true for each hidden region that is one
 /// Empty without a way.
-std::optional<ExposedWay> leastExposedWay(const FloorSight& floor, std::span<const Region> hidden,
-                                          const std::vector<bool>& starts,
-                                          const std::vector<bool>& goals);
+std::optional<ExposedPath> leastExposedPath(const FloorSight& floor, std::span<const Region> hidden,
+                                            const std::vector<bool>& starts,
+                                            const std::vector<bool>& goals);
 
 }  // namespace ispace

@@ -13,7 +13,7 @@ namespace {
 
 Localisation localisedIn(const std::string& lines, double within = 1) {
     const Scene scene = sceneOf(lines);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return localise(scene, measureCoverage(scene, worlds, {.cells = CellSize{0.5}}), within);
 }
 

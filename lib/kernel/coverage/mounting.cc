@@ -154,7 +154,7 @@ SampledFigures perturbMounting(const Scene& scene, const CoverageReport& planned
     CoverageOptions options = measure;
     options.keep_depths = false;
     options.parallax.reset();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     Scene mounted = scene;
     progress.begin("mountings", mountings);
     const auto measured = [&](int mounting) {

@@ -40,7 +40,7 @@ OutsideView moved(OutsideView view, const Pose2& pose, double lift);
 
 /// Measures a scene as measureCoverage() does, with the views of sensors that stand outside of its
 /// room. Their indices follow those of the scene's own sensors.
-Coverage measureWithOutside(const Scene& scene, Worlds& worlds, const CoverageOptions& options,
+Coverage measureWithOutside(const Scene& scene, RayScenes& worlds, const CoverageOptions& options,
                             std::span<const std::shared_ptr<const OutsideView>> outside,
                             Progress* progress = nullptr);
 

@@ -22,7 +22,7 @@ struct Room {
         : scene(sceneOf(lines)), grid{scene.environment.limits(), columns, rows} {}
 
     [[nodiscard]] CellSet seen(const Sensor& sensor, double plane) const {
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const VisibleArea sight(scene.environment, plane, &worlds);
         sight.prepare(sensor);
         return sight.cellsOf(grid, sensor);
@@ -103,7 +103,7 @@ TEST(PlaneCells, HeadSeesBearingsAndElevations) {
 // With a table of turned views, too.
 TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
     const Room room("ispace size=12,9,3", 150, 110);
-    Worlds worlds(room.scene.environment);
+    RayScenes worlds(room.scene.environment);
     const VisibleArea sight(room.scene.environment, 0, &worlds);
     for (const char* const lens :
          {"fov=75", "fov=110,62 range=3.1", "fx=400 cx=610 cy=50 range=6",
@@ -165,7 +165,7 @@ TEST(PlaneCells, CellsOfSeveralViewsAreThoseThatEachHolds) {
 
 TEST(PlaneCells, ViewsOfCountedCellsHoldThoseThatAreSeen) {
     const Room room("ispace size=12,8,4\ncube at=1,1 size=1,1,1");
-    Worlds worlds(room.scene.environment);
+    RayScenes worlds(room.scene.environment);
     const VisibleArea sight(room.scene.environment, 0, &worlds);
     const Sensor sensor = rangerAt(poseAt({0, 0, 3}, 0, -60), 90, 60, 20);
     sight.prepare(sensor);
@@ -194,7 +194,7 @@ TEST(PlaneCells, ViewsOfCountedCellsHoldThoseThatAreSeen) {
 
 TEST(PlaneCells, AWindowLeavesOutOtherCells) {
     const Room room("ispace size=12,8,4\ncube at=1,1 size=1,1,1");
-    Worlds worlds(room.scene.environment);
+    RayScenes worlds(room.scene.environment);
     const VisibleArea sight(room.scene.environment, 0, &worlds);
     const Sensor sensor = rangerAt(poseAt({0, 0, 3}, 0, -60), 90, 60, 20);
     sight.prepare(sensor);

@@ -12,10 +12,10 @@
 
 namespace ispace {
 
-PresenceView::PresenceView(const PeopleWays& ways, double plane)
+PresenceView::PresenceView(const PeoplePaths& ways, double plane)
     : ways_(ways), firsts_(ways.firsts()) {
     places_.reserve(ways.pieces.size());
-    for (const WayPiece& piece : ways.pieces)
+    for (const PathPiece& piece : ways.pieces)
         places_.push_back({piece.place.x, piece.place.y, plane});
 }
 
@@ -62,7 +62,7 @@ CellSet PresenceView::detected(const Sensor& sensor,
     return pieces;
 }
 
-CellSet PresenceView::detected(const Sensor& sensor, const Worlds& worlds) const {
+CellSet PresenceView::detected(const Sensor& sensor, const RayScenes& worlds) const {
     const Point3 origin = sensor.pose.position;
     const bool rides = sensor.mount || sensor.person;
     if (!detectsMotion(sensor.model) || rides ||
@@ -74,7 +74,7 @@ CellSet PresenceView::detected(const Sensor& sensor, const Worlds& worlds) const
 namespace {
 
 /// Sums the pieces from `begin` to before `end`.
-void addPieces(const PeopleWays& ways, const CellSet& seen, std::size_t begin, std::size_t end,
+void addPieces(const PeoplePaths& ways, const CellSet& seen, std::size_t begin, std::size_t end,
                PresenceFigures& figures) {
     double gap = 0, seen_length = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -89,9 +89,9 @@ void addPieces(const PeopleWays& ways, const CellSet& seen, std::size_t begin, s
 
 }  // namespace
 
-Presence measurePresence(const Scene& scene, const PeopleWays& ways, double plane) {
+Presence measurePresence(const Scene& scene, const PeoplePaths& ways, double plane) {
     std::vector<const Sensor*> sensors;
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     for (const Sensor& sensor : scene.sensors) {
         if (!detectsMotion(sensor.model)) continue;
         sensors.push_back(&sensor);

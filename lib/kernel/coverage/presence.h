@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/cell_set.h"
-#include "scene/run/people_ways.h"
+#include "scene/run/people_paths.h"
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 
@@ -25,9 +25,9 @@ constexpr double kPresenceDelay = 1;
 class PresenceView {
   public:
     /// Stores the reference.
-    PresenceView(const PeopleWays& ways, double plane);
+    PresenceView(const PeoplePaths& ways, double plane);
 
-    [[nodiscard]] const PeopleWays& ways() const { return ways_; }
+    [[nodiscard]] const PeoplePaths& ways() const { return ways_; }
     /// Finds the pieces in range whose beginnings no surface hides from a sensor's position: 1 for
     /// each of them. O(pieces + pieces in range * ray) \param mesh surfaces that stop its rays
     [[nodiscard]] std::vector<std::uint8_t> unhidden(const RayWorld& mesh,
@@ -39,10 +39,10 @@ class PresenceView {
                                    const std::vector<std::uint8_t>& unhidden) const;
     /// Likewise for any sensor of a scene; empty unless it detects motion and stands outside
     /// solids. \pre worlds has the mesh for the sensor's kind
-    [[nodiscard]] CellSet detected(const Sensor& sensor, const Worlds& worlds) const;
+    [[nodiscard]] CellSet detected(const Sensor& sensor, const RayScenes& worlds) const;
 
   private:
-    const PeopleWays& ways_;
+    const PeoplePaths& ways_;
     std::vector<Point3> places_;       // of the pieces, on the plane
     std::vector<std::size_t> firsts_;  // pieces by person
 };
@@ -70,6 +70,6 @@ struct Presence {
 
 /// Measures the presence that the sensors of a scene report. Doors and furniture are those of the
 /// scene. O(pieces * sensors); deterministic for any number of threads.
-Presence measurePresence(const Scene& scene, const PeopleWays& ways, double plane);
+Presence measurePresence(const Scene& scene, const PeoplePaths& ways, double plane);
 
 }  // namespace ispace

@@ -16,14 +16,14 @@ constexpr double kStep = 0.1;  // s, between two moments
 constexpr double kPlane = 1;   // m, the height of the sensors, too
 
 /// A person on a straight path for so many seconds.
-PeopleWays straight(Point2 from, Vec2 velocity, double duration) {
-    WayCutter cutter;
+PeoplePaths straight(Point2 from, Vec2 velocity, double duration) {
+    PathCutter cutter;
     for (int i = 0; i * kStep <= duration + 1e-9; ++i)
         cutter.add("p1", i * kStep, from + (i * kStep) * velocity);
     return cutter.finish();
 }
 
-Presence presenceIn(const std::string& sensors, const PeopleWays& ways) {
+Presence presenceIn(const std::string& sensors, const PeoplePaths& ways) {
     return measurePresence(sceneOf(kRoom + sensors), ways, kPlane);
 }
 
@@ -42,21 +42,21 @@ TEST(Presence, CountsTheWayInSightAndTheSecondBefore) {
 }
 
 TEST(Presence, IsAboutTheSpeedThatAKindDetects) {
-    const PeopleWays ways = straight({-2, 0}, {1, 0}, 1);
+    const PeoplePaths ways = straight({-2, 0}, {1, 0}, 1);
     EXPECT_EQ(presenceIn("pir at=-3,0,1 range=5 fov=60,60 min_speed=1.1\n", ways).all.share, 0);
     EXPECT_EQ(presenceIn("pir at=-3,0,1 range=5 fov=60,60 min_speed=0.9\n", ways).all.share, 1);
     // On a circle about it, chords of 0.2 rad have radial speeds of 0.1 m/s.
-    WayCutter cutter;
+    PathCutter cutter;
     for (int i = 0; i <= 20; ++i)
-        cutter.add("p1", i * kWayStep, {std::cos(0.2 * i), std::sin(0.2 * i)});
-    const PeopleWays circle = cutter.finish();
+        cutter.add("p1", i * kPathStep, {std::cos(0.2 * i), std::sin(0.2 * i)});
+    const PeoplePaths circle = cutter.finish();
     EXPECT_EQ(presenceIn("radar at=0,0,1 fov=360,90 min_speed=0.15\n", circle).all.share, 0);
     EXPECT_EQ(presenceIn("radar at=0,0,1 fov=360,90 min_speed=0.05\n", circle).all.share, 1);
     EXPECT_EQ(presenceIn("pir at=0,0,1 fov=360,90\n", circle).all.share, 1);
 }
 
 TEST(Presence, EndsAtWallsAndSolids) {
-    const PeopleWays ways = straight({1, 0}, {0.5, 0}, 2);
+    const PeoplePaths ways = straight({1, 0}, {0.5, 0}, 2);
     EXPECT_EQ(presenceIn("pir at=-1,0,1\n", ways).all.share, 1);
     EXPECT_EQ(presenceIn("pir at=-1,0,1\nwall from=0,-3 to=0,3\n", ways).all.share, 0);
     EXPECT_EQ(presenceIn("pir at=-1,0,1\ncube at=-1,0 size=0.5,0.5,2\n", ways).all.share, 0);
@@ -64,7 +64,7 @@ TEST(Presence, EndsAtWallsAndSolids) {
 }
 
 TEST(Presence, NamesThePartOfEachSensor) {
-    const PeopleWays ways = straight({-2, 0}, {1, 0}, 5);
+    const PeoplePaths ways = straight({-2, 0}, {1, 0}, 5);
     const Presence presence =
         presenceIn(std::string(kPir) + "pir id=m2 at=-3,0,1 range=9 fov=60,60\n", ways);
     ASSERT_EQ(presence.sensors.size(), 2U);

@@ -40,7 +40,7 @@ CoverageOptions cellsOfTest(bool exact = true) {
 }
 
 Coverage measuredBy(const Scene& scene, const CoverageOptions& options) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, options);
 }
 

@@ -35,7 +35,7 @@ struct RunCoverageMetrics {
 };
 
 /// A piece of a mover's way seen by a constant number of sensors.
-struct SeenWay {
+struct SeenPath {
     std::size_t member = 0;  ///< index in RunCoverage::members
     std::size_t sensors = 0;
     std::vector<Point2> points = {};  ///< a single one if it stood there
@@ -73,7 +73,7 @@ struct RunCoverage {
     double begin = 0, end = 0;
     std::vector<RunCoverageMetrics> members;
     RunCoverageMetrics all;
-    std::vector<SeenWay> ways = {};
+    std::vector<SeenPath> ways = {};
     std::vector<TrackLoss> losses = {};           ///< sorted by duration, the longest first
     std::vector<UnreachedTarget> unreached = {};  ///< in the order of their first times
     std::vector<RunContact> contacts = {};        ///< likewise

@@ -28,18 +28,18 @@ bool lessEdge(const Edge& a, const Edge& b) {
 /// Removes pairs of edges that run in opposite directions.
 std::vector<Edge> uncancelled(const std::vector<Edge>& edges) {
     // An edge from its lower end, with its direction.
-    struct Way {
+    struct Path {
         Edge edge;
         int sign;
     };
-    std::vector<Way> ways;
+    std::vector<Path> ways;
     ways.reserve(edges.size());
     for (const Edge& edge : edges) {
         const bool is_up = lexLess(edge.from, edge.to);
         ways.push_back({is_up ? edge : Edge{edge.to, edge.from}, is_up ? 1 : -1});
     }
     std::sort(ways.begin(), ways.end(),
-              [](const Way& a, const Way& b) { return lessEdge(a.edge, b.edge); });
+              [](const Path& a, const Path& b) { return lessEdge(a.edge, b.edge); });
     std::vector<Edge> left;
     for (std::size_t i = 0; i < ways.size();) {
         const Edge edge = ways[i].edge;

@@ -32,7 +32,7 @@ class VisibleArea {
     /// Stores the references. \param plane height of the plane \param worlds required for cells on
     /// planes; null if only regions are requested \param reach of the farthest level laser, see
     /// LevelViews
-    VisibleArea(const Environment& environment, double plane, Worlds* worlds = nullptr,
+    VisibleArea(const Environment& environment, double plane, RayScenes* worlds = nullptr,
                 double reach = std::numeric_limits<double>::infinity())
         : environment_(environment), plane_(plane), worlds_(worlds), reach_(reach) {}
 
@@ -68,7 +68,7 @@ class VisibleArea {
 
     const Environment& environment_;
     double plane_;
-    Worlds* worlds_;
+    RayScenes* worlds_;
     double reach_;
     Lazy<ShadowCaster> shadows_;
     std::shared_ptr<KnownRegions> known_;  // null: none are kept

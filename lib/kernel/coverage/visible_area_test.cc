@@ -22,7 +22,7 @@ struct Room {
 
     Scene scene;
     Grid grid;
-    Worlds worlds{scene.environment};
+    RayScenes worlds{scene.environment};
     VisibleArea sight{scene.environment, 0, &worlds};
 };
 

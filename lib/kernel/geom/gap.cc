@@ -14,7 +14,7 @@ namespace ispace {
 namespace {
 
 /// Number of ways to close a dangling end: the nearest may enclose no further area.
-constexpr std::size_t kWaysPerEnd = 4;
+constexpr std::size_t kPathsPerEnd = 4;
 /// Closings considered, the narrowest first: no plan has more, and very many loose lines still take
 /// seconds only.
 constexpr std::size_t kMaxClosings = 10000;
@@ -111,15 +111,15 @@ class GapFinder {
     }
 
   private:
-    struct Way {
+    struct Path {
         double width;
         Point2 to;
         std::size_t source;
-        friend bool operator<(const Way& v, const Way& w) {
+        friend bool operator<(const Path& v, const Path& w) {
             return std::tuple(v.width, v.to.x, v.to.y, v.source) <
                    std::tuple(w.width, w.to.x, w.to.y, w.source);
         }
-        friend bool operator==(const Way& v, const Way& w) { return v.to == w.to; }
+        friend bool operator==(const Path& v, const Path& w) { return v.to == w.to; }
     };
 
     /// True if lines come no nearer to `end` than at their point `to`. Along the chain of lines
@@ -141,7 +141,7 @@ class GapFinder {
     }
 
     void addClosings(std::size_t own, Point2 end, double widest, std::vector<Closing>& all) const {
-        std::vector<Way> ways;
+        std::vector<Path> ways;
         const auto collect = [&](std::size_t i) {
             if (i == own) return;
             const Point2 to = nearestPoint(lines_.pieces[i], end);
@@ -157,12 +157,12 @@ class GapFinder {
             tree_.search({end, end}, reach, collect);
             std::sort(ways.begin(), ways.end());
             ways.erase(std::unique(ways.begin(), ways.end()), ways.end());
-            if (ways.size() >= kWaysPerEnd && ways[kWaysPerEnd - 1].width <= reach) break;
+            if (ways.size() >= kPathsPerEnd && ways[kPathsPerEnd - 1].width <= reach) break;
             if (!(reach < extent_) || reach >= widest) break;  // all lines were visited
         }
-        ways.resize(std::min(ways.size(), kWaysPerEnd));
+        ways.resize(std::min(ways.size(), kPathsPerEnd));
         const std::size_t source = lines_.source[own];
-        for (const Way& way : ways) {
+        for (const Path& way : ways) {
             Segment2 line{end, way.to};
             if (lexLess(line.b, line.a)) std::swap(line.a, line.b);
             all.push_back(

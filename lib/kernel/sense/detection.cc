@@ -99,7 +99,7 @@ struct DetectionMonitor::Data {
 
     double plane;
     OutsideWatch outside;
-    Worlds worlds;  // with the rooms around, which hide floor from sensors of the room, too
+    RayScenes worlds;  // with the rooms around, which hide floor from sensors of the room, too
     std::vector<Watcher> watchers;
 };
 

@@ -36,7 +36,7 @@ struct Moment {
     const Pose3& pose;
     int frame = 0;
     double time = 0;  ///< seconds
-    const Worlds& worlds;
+    const RayScenes& worlds;
     const MovingBodies& bodies;
     std::span<const Sensor> receivers;
     const TakerOptions& options;

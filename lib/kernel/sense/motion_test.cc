@@ -24,7 +24,7 @@ double rangeInRoom(Point2 from, Vec2 way) {
 
 std::vector<Scan> drive(const Scene& scene, const std::vector<TimedPose>& way, double time) {
     const Sensors sensors = sensorsOf(scene, {});
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
     ReadingSampler taker(sensors, worlds, bodies, {.follows_poses = true});
     const ReadingJob job{0, 0, time, poseAlong(way, time), way};

@@ -33,7 +33,7 @@ Scan levelScan(const Pose3& pose, const MovingBodies& bodies) {
     sensor.as<Laser>().step = Angle::degrees(0.5);
     sensor.as<Laser>().beams = 361;
     sensor.as<Laser>().max_range = 30;
-    Worlds worlds(room.environment);
+    RayScenes worlds(room.environment);
     worlds.prepare(pose);
     Scan scan;
     scan.pose = pose;

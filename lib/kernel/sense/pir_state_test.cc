@@ -49,7 +49,7 @@ class PirTest : public ::testing::Test {
         return detect().motion;
     }
 
-    std::optional<Worlds> worlds;
+    std::optional<RayScenes> worlds;
 };
 
 TEST_F(PirTest, SeesPeopleWhoMoveInAnyDirection) {

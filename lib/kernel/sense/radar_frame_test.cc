@@ -39,7 +39,7 @@ class RadarTest : public ::testing::Test {
             .detections;
     }
 
-    std::optional<Worlds> worlds;
+    std::optional<RayScenes> worlds;
 };
 
 TEST_F(RadarTest, MeasuresRangeBearingAndRadialSpeed) {

@@ -98,7 +98,7 @@ Reading readAtOnce(const Moment& moment) {
 
 struct ReadingSampler::Data {
     const Sensors& sensors;
-    Worlds& worlds;
+    RayScenes& worlds;
     const MovingBodies& bodies;
     TakerOptions options;
     /// A caster per laser, created on first use, for each thread.
@@ -134,8 +134,8 @@ void ReadingSampler::Data::prepare(const Laser& laser, const ReadingJob& job) {
         worlds.prepareMesh();
 }
 
-ReadingSampler::ReadingSampler(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
-                               const TakerOptions& options)
+ReadingSampler::ReadingSampler(const Sensors& sensors, RayScenes& worlds,
+                               const MovingBodies& bodies, const TakerOptions& options)
     : data_(std::make_unique<Data>(Data{sensors, worlds, bodies, options, {}})) {
     data_->options.fixes = std::make_shared<UwbFixes>();
 }

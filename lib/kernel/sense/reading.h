@@ -97,7 +97,7 @@ Reading readAtOnce(const Moment& moment);
 class ReadingSampler {
   public:
     /// Prepares the sensors. \pre all arguments outlive it
-    ReadingSampler(const Sensors& sensors, Worlds& worlds, const MovingBodies& bodies,
+    ReadingSampler(const Sensors& sensors, RayScenes& worlds, const MovingBodies& bodies,
                    const TakerOptions& options);
     ~ReadingSampler();
     ReadingSampler(const ReadingSampler&) = delete;

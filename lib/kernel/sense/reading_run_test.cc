@@ -23,7 +23,7 @@ const std::string kRoom =
 std::string run(const Scene& scene, const std::string& format, int frames,
                 const TakerOptions& options = {}) {
     const Sensors sensors = sensorsOf(scene, {});
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
     ReadingSampler taker(sensors, worlds, bodies, options);
     StillSource source(sensors, frames);
@@ -110,7 +110,7 @@ TEST(ReadingRun, WhatComesBeforeAFailureIsWritten) {
     const Scene scene = testing::scene(kRoom, "laser at=1,1 step=5\n");
     const Sensors sensors = sensorsOf(scene, {});
     for (int i = 0; i < 10; ++i) {
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const MovingBodies nobody;
         ReadingSampler taker(sensors, worlds, nobody, {});
         Failing source;
@@ -219,7 +219,7 @@ TEST(ReadingRun, JobsInTheFrameOfTheSite) {
     const Sensors sensors = sensorsOf(scene, {});
     const auto run_at = [&](const std::string& pose, const Pose3* site_from_room) {
         PoseSource source(linesOf("0 " + pose + "\n"));
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const MovingBodies nobody;
         ReadingSampler taker(sensors, worlds, nobody, {.follows_poses = true});
         const auto writer = makeFormat("jsonl", sensors, {});

@@ -223,7 +223,7 @@ std::vector<float> castBeams(const RayWorld& world, const Sensor& sensor) {
     return ranges;
 }
 
-LaserCaster::LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const Sensor& sensor,
+LaserCaster::LaserCaster(const RayScenes& worlds, const MovingBodies& bodies, const Sensor& sensor,
                          bool turns, const ReadingOptions& options,
                          std::shared_ptr<const Directions> local)
     : worlds_(&worlds),

@@ -168,8 +168,9 @@ struct BeamFrames {
 class LaserCaster {
   public:
     /// `turns`, `local`: see Beams. \pre the references outlive it
-    LaserCaster(const Worlds& worlds, const MovingBodies& bodies, const Sensor& sensor, bool turns,
-                const ReadingOptions& options, std::shared_ptr<const Directions> local = nullptr);
+    LaserCaster(const RayScenes& worlds, const MovingBodies& bodies, const Sensor& sensor,
+                bool turns, const ReadingOptions& options,
+                std::shared_ptr<const Directions> local = nullptr);
     /// Computes the ranges of a scan from its frame, number, pose and beam_poses, including the
     /// blind zone and, if requested, noise. \pre the worlds are prepared for the pose, and their
     /// mesh if beam_poses are not all level and at its height
@@ -191,7 +192,7 @@ class LaserCaster {
                   std::span<const BeamsAmong> parts);
     [[nodiscard]] Vec2 localBeam(std::size_t beam) const;
 
-    const Worlds* worlds_;
+    const RayScenes* worlds_;
     const MovingBodies* bodies_;
     const Sensor* sensor_;
     ReadingOptions options_;

@@ -105,7 +105,7 @@ TEST(Scan, ExactlyMaximumRange) {
 TEST(Scan, BlindZone) {
     const Scene scene = testing::scene(kRoom);
     const Sensor sensor = placed(laserWithRange(0.5, 5), at(7.5, 3, 0.15));
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     worlds.prepare(sensor.pose);
     const RayWorld& world = worlds.at(sensor.pose);
     EXPECT_EQ(testing::scan(scene, sensor).ranges[90], 0.5F);  // exactly at its edge

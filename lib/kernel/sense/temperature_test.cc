@@ -22,7 +22,7 @@ Temperature temperatureIn(const std::string& room, double time = 0,
                           const TakerOptions& options = {}) {
     const Scene scene = testing::scene("ispace size=8,6\n" + room, layout);
     const Sensors sensors = sensorsOf(scene, {});
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const MovingBodies bodies(bodiesOf(scene));
     ReadingSampler taker(sensors, worlds, bodies, options);
     const ReadingJob job{0, 0, time, sensors.read[0].pose, {}};

@@ -58,7 +58,7 @@ class UwbFixes {
         int frame;
         double time;
         std::optional<std::uint64_t> seed;
-        const Worlds* worlds;
+        const RayScenes* worlds;
         Environment environment;  // keeps the address of its elements
         SharedList<RfidTag> tags;
         SharedList<UwbAnchor> anchors;

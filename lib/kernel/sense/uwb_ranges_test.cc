@@ -37,7 +37,7 @@ TEST(UwbRanges, OfAMomentShareThePositionsOfTags) {
         layout += std::string("uwb at=") + at + " sigma=0.05\n";
     const Scene scene = testing::scene(
         "ispace size=12,12,2.5\nwall from=2,-6 to=2,-1\ncube at=4,0 size=0.4 tag=crate\n", layout);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     worlds.prepareMesh(kindOf(scene.sensors.front().model).stopped_by);
     const MovingBodies bodies(bodiesOf(scene));
     const auto ranges_of = [&](const Sensor& sensor, const Pose3& pose, int frame,

@@ -226,18 +226,18 @@ bool hasClearGlass(const Environment& environment) {
 // Only the preparing thread adds worlds, so it reads without a lock; other threads may read while
 // it builds.
 
-Worlds::Worlds(const Environment& environment, std::shared_ptr<const SurroundedRoom> around)
+RayScenes::RayScenes(const Environment& environment, std::shared_ptr<const SurroundedRoom> around)
     : environment_(&environment),
       around_(std::move(around)),
       has_clear_(hasClearGlass(environment)) {}
 
-const RayWorld* Worlds::sliceAt(double height) const {
+const RayWorld* RayScenes::sliceAt(double height) const {
     const std::shared_lock lock(mutex_);
     const auto slice = slices_.find(height);
     return slice == slices_.end() ? nullptr : &slice->second;
 }
 
-void Worlds::prepare(const Pose3& pose, const Worlds* before) {
+void RayScenes::prepare(const Pose3& pose, const RayScenes* before) {
     if (!pose.isLevel()) return prepareMesh();
     const double height = pose.position.z;
     if (slices_.contains(height)) return;
@@ -249,7 +249,7 @@ void Worlds::prepare(const Pose3& pose, const Worlds* before) {
     slices_.emplace(height, std::move(slice));
 }
 
-void Worlds::prepareMesh(Surfaces surfaces) {
+void RayScenes::prepareMesh(Surfaces surfaces) {
     if (around_ != nullptr && (surfaces == Surfaces::Opaque || !has_clear_)) {
         static_cast<void>(around_->mesh());
         is_around_prepared_ = true;
@@ -263,13 +263,13 @@ void Worlds::prepareMesh(Surfaces surfaces) {
     mesh.emplace(std::move(made));
 }
 
-const RayWorld& Worlds::at(const Pose3& pose) const {
+const RayWorld& RayScenes::at(const Pose3& pose) const {
     if (pose.isLevel())
         if (const RayWorld* const slice = sliceAt(pose.position.z)) return *slice;
     return mesh();
 }
 
-const RayWorld& Worlds::mesh(Surfaces surfaces) const {
+const RayWorld& RayScenes::mesh(Surfaces surfaces) const {
     if (around_ != nullptr && (surfaces == Surfaces::Opaque || !has_clear_)) return around_->mesh();
     const std::shared_lock lock(mutex_);
     const std::optional<RayWorld>& mesh = hearsMore(surfaces) ? solid_ : mesh_;

@@ -99,7 +99,7 @@ class SurroundedRoom {
 ///
 /// One thread prepares worlds for coming poses; any thread may call at() for prepared poses, also
 /// meanwhile. Worlds keep their address.
-class Worlds {
+class RayScenes {
   public:
     /// Maximum number of slices. Level poses at further heights, in the order of prepare(), are
     /// traced in the mesh.
@@ -112,10 +112,10 @@ class Worlds {
 
     /// \param around the same room with those around it, which light meets, in level slices, too;
     ///        null: the room alone. Sound is that of the room
-    explicit Worlds(const Environment& environment,
-                    std::shared_ptr<const SurroundedRoom> around = nullptr);
+    explicit RayScenes(const Environment& environment,
+                       std::shared_ptr<const SurroundedRoom> around = nullptr);
     /// \param before worlds of another environment, which may share its data; see ofLevel()
-    void prepare(const Pose3& pose, const Worlds* before = nullptr);
+    void prepare(const Pose3& pose, const RayScenes* before = nullptr);
     /// Builds the mesh for sensors that look in all directions: surfaces that stop light, or
     /// (Solid) sound.
     void prepareMesh(Surfaces surfaces = Surfaces::Opaque);

@@ -35,15 +35,15 @@ Pose3 at(double x, double y, double z, double heading = 0, double tilt = 0) {
 
 Directions along(Vec3 direction) { return {{direction.x}, {direction.y}, {direction.z}}; }
 
-float ahead(const Worlds& worlds, const Pose3& pose) {
+float ahead(const RayScenes& worlds, const Pose3& pose) {
     float range = 0;
     worlds.at(pose).cast(pose.position, along(pose.beam({})), 100, {&range, 1});
     return range;
 }
 
-TEST(Worlds, LevelSensorsMeetTheSliceOfTheirHeightOthersTheMesh) {
+TEST(RayScenes, LevelSensorsMeetTheSliceOfTheirHeightOthersTheMesh) {
     const Scene scene = furnishedRoom();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Pose3 low = at(7.5, 3, 0.15, 180), high = at(7.5, 3, 0.8, 180);
     const Pose3 down = at(6, 3, 1.5, 0, -90), slightly = at(7.5, 3, 0.8, 180, -10);
     for (const Pose3& pose : {low, high, down, slightly, low}) worlds.prepare(pose);
@@ -58,16 +58,16 @@ TEST(Worlds, LevelSensorsMeetTheSliceOfTheirHeightOthersTheMesh) {
     EXPECT_NE(&worlds.at(down), &worlds.at(low));
 }
 
-TEST(Worlds, SoundIsStoppedByClearGlassToo) {
+TEST(RayScenes, SoundIsStoppedByClearGlassToo) {
     const Scene plain = furnishedRoom();
-    Worlds of_plain(plain.environment);
+    RayScenes of_plain(plain.environment);
     of_plain.prepareMesh(Surfaces::Solid);
     EXPECT_EQ(&of_plain.mesh(Surfaces::Solid), &of_plain.mesh())
         << "one world is enough without clear glass";
     const Scene scene = testing::scene(
         "ispace size=8,6,2.5\ninside at=-3,0\nwall id=w from=1,-2.9 to=1,2.9 height=2.5\n"
         "window wall=w offset=2.9 size=3,0.1,2 sill=0.1\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     worlds.prepareMesh();
     worlds.prepareMesh(Surfaces::Solid);
     const Point3 from{-2, 0, 1};
@@ -78,11 +78,11 @@ TEST(Worlds, SoundIsStoppedByClearGlassToo) {
     EXPECT_EQ(sound, 3);
 }
 
-TEST(Worlds, LightAndSoundMeetTheRoomsAround) {
+TEST(RayScenes, LightAndSoundMeetTheRoomsAround) {
     const Scene scene = furnishedRoom();
     const auto around = std::make_shared<const SurroundedRoom>(
         testing::scene("ispace at=4,3 size=8,6,2.5\ncube at=6,3 size=1,1,1\n").environment);
-    Worlds worlds(scene.environment, around), others(scene.environment, around);
+    RayScenes worlds(scene.environment, around), others(scene.environment, around);
     const Pose3 level = at(7.5, 3, 0.8, 180), down = at(6, 3, 1.5, 0, -90);
     worlds.prepare(level);
     EXPECT_FALSE(worlds.meshes().opaque);
@@ -98,16 +98,16 @@ TEST(Worlds, LightAndSoundMeetTheRoomsAround) {
     EXPECT_EQ(&others.mesh(), &worlds.mesh()) << "it is built once";
 }
 
-TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {
+TEST(RayScenes, HeightsBeyondThoseKeptAreTracedInTheMesh) {
     const Scene scene = furnishedRoom();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const auto pose = [](std::size_t i) {
         return at(7.5, 3, 0.1 + 0.01 * static_cast<double>(i), 180);
     };
-    const std::size_t count = Worlds::kMaxSlices + 20;
+    const std::size_t count = RayScenes::kMaxSlices + 20;
     for (std::size_t i = 0; i < count; ++i) worlds.prepare(pose(i));
     for (std::size_t i = 0; i < count; ++i) {
-        EXPECT_EQ(&worlds.at(pose(i)) == &worlds.mesh(), i >= Worlds::kMaxSlices) << i;
+        EXPECT_EQ(&worlds.at(pose(i)) == &worlds.mesh(), i >= RayScenes::kMaxSlices) << i;
         // The cube is met up to its top.
         EXPECT_NEAR(ahead(worlds, pose(i)), i <= 40 ? 1 : 7.5, 1e-6) << i;
     }
@@ -117,9 +117,9 @@ TEST(Worlds, HeightsBeyondThoseKeptAreTracedInTheMesh) {
     EXPECT_EQ(&worlds.at(pose(count - 1)), &worlds.mesh());
 }
 
-TEST(Worlds, LevelPosesAtHeightsThatNobodyPreparedAreTracedInTheMesh) {
+TEST(RayScenes, LevelPosesAtHeightsThatNobodyPreparedAreTracedInTheMesh) {
     const Scene scene = furnishedRoom();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Pose3 low = at(7.5, 3, 0.15, 180), between = at(7.5, 3, 0.3, 180);
     const Pose3 high = at(7.5, 3, 0.8, 180);
     worlds.prepare(low);
@@ -136,7 +136,7 @@ TEST(Worlds, LevelPosesAtHeightsThatNobodyPreparedAreTracedInTheMesh) {
     EXPECT_EQ(ahead(worlds, between), 1);
 }
 
-TEST(Worlds, LevelRaysMeetInTheMeshWhatTheyMeetInTheSlice) {
+TEST(RayScenes, LevelRaysMeetInTheMeshWhatTheyMeetInTheSlice) {
     const Scene scene = furnishedRoom();
     std::mt19937_64 random(24);
     std::uniform_real_distribution<double> x(0.1, 7.9), y(0.1, 5.9), turn(0, 360);
@@ -165,9 +165,9 @@ TEST(Worlds, LevelRaysMeetInTheMeshWhatTheyMeetInTheSlice) {
     EXPECT_LE(beside, 3);  // of 18 000
 }
 
-TEST(Worlds, OthersReadWhileOneThreadPrepares) {
+TEST(RayScenes, OthersReadWhileOneThreadPrepares) {
     const Scene scene = furnishedRoom();
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const auto pose = [](int i) { return at(7.5, 3, 0.1 + 0.005 * i, 180); };
     std::atomic<int> ready = 0;
     std::vector<std::thread> readers;
@@ -291,7 +291,7 @@ TEST(Mesh, TiltedRaysPassASheetSeenFromItsEdge) {
                     formatDouble(-0.21 + at * along.y);
         const Scene scene =
             testing::scene("ispace size=16,16,9 ceiling=yes\ninside at=0.37,-0.21\n" + wall + "\n");
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const Pose3 pose{{0.37, -0.21, 1.2}, heading, tilt, {}};
         worlds.prepare(pose);
         const float range = ahead(worlds, pose);
@@ -304,7 +304,7 @@ TEST(Mesh, TiltedRaysPassASheetSeenFromItsEdge) {
 TEST(Mesh, FloorIsMetOnlyIndoorsAndCoveringsAreNotFelt) {
     const Scene scene =
         testing::scene("ispace at=0,0 size=4,4\nfloor at=0,0 size=2,2 kind=checker\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Pose3 inside = at(0.3, 0.3, 1, 0, -90), outside = at(3, 0, 1, 0, -90);
     worlds.prepare(inside);
     EXPECT_EQ(ahead(worlds, inside), 1);

@@ -24,7 +24,7 @@ class BoxSight {
 
   private:
     /// Ends of the edges that a sight line has crossed.
-    struct Way {
+    struct Path {
         Convex source;  // part of the box
         std::vector<Point2> lefts, rights;
         std::vector<Side2> limits;
@@ -36,8 +36,8 @@ class BoxSight {
     void addDirections(const PoseBox& box);
     /// Adds the part within range and directions; returns false if there is none.
     bool add(Convex polygon);
-    void follow(std::size_t face, std::size_t edge, const Way& before);
-    static Side2 limitAt(Point2 end, Point2 other, double turn, const Way& way,
+    void follow(std::size_t face, std::size_t edge, const Path& before);
+    static Side2 limitAt(Point2 end, Point2 other, double turn, const Path& way,
                          const std::vector<Point2>& others);
 
     const BoxViews& floor_;
@@ -102,7 +102,7 @@ bool BoxSight::add(Convex polygon) {
 
 /// Returns the side of a line through an end of an edge on which points beyond the edge lie.
 /// \param other the edge's other end \param turn 1: the end is on the left, -1: on the right
-Side2 BoxSight::limitAt(Point2 end, Point2 other, double turn, const Way& way,
+Side2 BoxSight::limitAt(Point2 end, Point2 other, double turn, const Path& way,
                         const std::vector<Point2>& others) {
     constexpr double kClear = 1e-9;  // metres on the near side, and from the end
     const Vec2 along = (1 / length(end - other)) * (end - other);
@@ -126,14 +126,14 @@ Side2 BoxSight::limitAt(Point2 end, Point2 other, double turn, const Way& way,
 }
 
 /// Follows all sight lines that leave a face by an edge.
-void BoxSight::follow(std::size_t face, std::size_t edge, const Way& before) {
+void BoxSight::follow(std::size_t face, std::size_t edge, const Path& before) {
     const BoxViews::Face& near = floor_.faces_[face];
     if (near.beyond[edge] < 0) return;
     const auto beyond = static_cast<std::size_t>(near.beyond[edge]);
     if (is_start_[beyond] != 0 || ++steps_ > kMaxSteps) return;
     // The near face is to the left of its edge, so ahead its first corner is on the right.
     const Point2 right = near.at[edge], left = near.at[(edge + 1) % 3];
-    Way way = before;
+    Path way = before;
     keepInside(way.source, {right, -perpendicular(left - right)});
     if (way.source.empty()) return;
     if (way.rights.empty() || !(way.rights.back() == right)) {
@@ -163,7 +163,7 @@ BoxView BoxSight::view() {
         is_start_[i] = shared.empty() ? 0 : 1;
         if (!shared.empty()) add({at.begin(), at.end()});
     }
-    const Way way{source_, {}, {}, {}};
+    const Path way{source_, {}, {}, {}};
     for (std::size_t i = 0; i < count; ++i)
         for (std::size_t edge = 0; edge < 3 && is_start_[i] != 0; ++edge) follow(i, edge, way);
     if (steps_ > kMaxSteps) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "arrange/poses/box_sides.h"
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 
 namespace ispace::poses {
 

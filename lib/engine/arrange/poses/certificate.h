@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 #include "geom/polygon.h"
 
 namespace ispace {

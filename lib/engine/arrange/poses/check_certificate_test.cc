@@ -152,7 +152,7 @@ TEST(BoxViews, WeighFloorByZones) {
             {low, {low.x + size(random), low.y + size(random)}}, turn(random), size(random)};
         const Sector sector{1 + 2 * size(random), i % 3 == 0 ? 2 * kPi : 0.5 + turn(random) / 2, 0};
         const double own = BoxViews({&region, 1}, kCells, sector, zones()).viewOf(box).area;
-        EXPECT_LE(own, fatViewOf(searched, sector, box).area * (1 + 1e-9) + 1e-9) << i;
+        EXPECT_LE(own, outerBoundOf(searched, sector, box).area * (1 + 1e-9) + 1e-9) << i;
         const double one = BoxViews({&region, 1}, kCells, sector).viewOf(box).area;
         EXPECT_LE(own, 3 * one + 1e-9);
     }
@@ -318,7 +318,7 @@ TEST(BoxViews, AreNoLargerThanThoseOfTheSearch) {
                 {low, {low.x + size(random), low.y + size(random)}}, turn(random), size(random)};
             const Sector sector{1 + 2 * size(random), i % 3 == 0 ? 2 * kPi : 0.5 + turn(random) / 2,
                                 0};
-            const double searched = fatViewOf(floor, sector, box).area;
+            const double searched = outerBoundOf(floor, sector, box).area;
             const double own = BoxViews({&region, 1}, kCells, sector).viewOf(box).area;
             EXPECT_LE(own, searched * (1 + 1e-9) + 1e-9) << i;
         }

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "arrange/poses/core_view.h"
+#include "arrange/poses/inner_bound.h"
 #include "base/simd.h"
 
 namespace ispace::poses {
@@ -76,27 +76,27 @@ void PoseBoxes::addViews(BoxNode& node) const {
     node.is_bare = false;
     if (node.isBlind()) return;
     const PoseBox& box = node.box;
-    const FatView view = fatViewOf(floor_, sector_, box);
+    const OuterBound view = outerBoundOf(floor_, sector_, box);
     node.parts = CellParts(view.parts);
     node.most = std::min(node.most, view.area);
-    node.core = CellParts(coreViewOf(floor_, sector_, box));
+    node.core = CellParts(innerBoundOf(floor_, sector_, box));
     const PoseFloor& large = floor_.in(Grain::Large);
-    node.large_parts = CellParts(fatViewOf(large, sector_, box).parts);
-    node.large_core = CellParts(coreViewOf(large, sector_, box));
+    node.large_parts = CellParts(outerBoundOf(large, sector_, box).parts);
+    node.large_core = CellParts(innerBoundOf(large, sector_, box));
     const Point2 middle = box.at.center();
     const PoseBox centre{{middle, middle}, box.from + box.span / 2, 0};
-    node.centre = CellParts(fatViewOf(large, sector_, centre).parts);
+    node.centre = CellParts(outerBoundOf(large, sector_, centre).parts);
 }
 
 void PoseBoxes::addLarge(BoxNode& node) const {
     node.is_large = true;
     node.is_bare = false;
     const PoseFloor& large = floor_.in(Grain::Large);
-    const FatView view = fatViewOf(large, sector_, node.box);
+    const OuterBound view = outerBoundOf(large, sector_, node.box);
     node.most = std::min(node.most, view.area);
     if (node.isBlind()) return;
     node.large_parts = CellParts(view.parts);
-    node.large_core = CellParts(coreViewOf(large, sector_, node.box));
+    node.large_core = CellParts(innerBoundOf(large, sector_, node.box));
 }
 
 void PoseBoxes::addLargeViews(std::vector<BoxId> ids) {

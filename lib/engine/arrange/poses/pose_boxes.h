@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 #include "base/packed.h"
 
 namespace ispace::poses {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 #include "geom/arrangement.h"
 
 namespace ispace::poses {

@@ -74,7 +74,7 @@ void PoseSearcher::searchSingle() {
         const Point2 middle = best.at.center();
         seen = std::max(
             seen,
-            fatViewOf(floor_, sector_, {{middle, middle}, best.from + best.span / 2, 0}).area);
+            outerBoundOf(floor_, sector_, {{middle, middle}, best.from + best.span / 2, 0}).area);
         boxes_.split(batch);
         for (const BoxId id : batch)
             for (BoxId half = boxes_[id].child; half < boxes_[id].child + 2; ++half)

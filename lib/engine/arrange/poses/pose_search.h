@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "arrange/poses/certificate.h"
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 #include "base/error.h"
 #include "base/part_file.h"
 #include "base/shard.h"
@@ -65,11 +65,11 @@ constexpr int kMaxPosed = 4;
 /// Bounds the area that equal sensors see together, or that several of them see, at any poses on
 /// the floor, by branch and bound over tuples of boxes of poses, one box for each sensor.
 ///
-/// All that the poses of a tuple see lies in the union of its fat views (fatViewOf()). No sensor
+/// All that the poses of a tuple see lies in the union of its fat views (outerBoundOf()). No sensor
 /// adds more than the largest single view in its box, which its subdivision bounds; what sensors
-/// see in any poses of their boxes, their cores (coreViewOf()), is counted once. So the bound of a
-/// tuple is the least, over all subsets of the sensors, of their known areas, and in each cell the
-/// lesser of the fat views of the others and the floor less all of their cores. In cells that
+/// see in any poses of their boxes, their cores (innerBoundOf()), is counted once. So the bound of
+/// a tuple is the least, over all subsets of the sensors, of their known areas, and in each cell
+/// the lesser of the fat views of the others and the floor less all of their cores. In cells that
 /// several views share in part, the union counts the sum of the parts, up to the floor in the cell.
 /// MultipleBound has the bound for several times, SumBound another one by the parts of each box.
 ///

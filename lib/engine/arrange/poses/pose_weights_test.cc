@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "arrange/poses/box_sums.h"
-#include "arrange/poses/core_view.h"
+#include "arrange/poses/inner_bound.h"
 #include "arrange/poses/multiple_bound.h"
 #include "arrange/poses/pose_search.h"
 #include "arrange/poses/sum_bound.h"
@@ -100,10 +100,10 @@ TEST(PoseWeights, LargeCellsHoldTheSameFloor) {
     const Sector sector{3, 2, -1};
     for (const double at : {1.0, 1.7, 2.9}) {
         const PoseBox box{{{at, at}, {at + 0.3, at + 0.2}}, at, 0.3};
-        const double fat = weightedParts(large, fatViewOf(large, sector, box).parts);
-        const double core = weightedParts(large, coreViewOf(large, sector, box));
-        const double fine_fat = weightedParts(fine, fatViewOf(fine, sector, box).parts);
-        const double fine_core = weightedParts(fine, coreViewOf(fine, sector, box));
+        const double fat = weightedParts(large, outerBoundOf(large, sector, box).parts);
+        const double core = weightedParts(large, innerBoundOf(large, sector, box));
+        const double fine_fat = weightedParts(fine, outerBoundOf(fine, sector, box).parts);
+        const double fine_core = weightedParts(fine, innerBoundOf(fine, sector, box));
         EXPECT_GE(fat, fine_fat * 0.99);
         EXPECT_LE(fat, fine_fat * 1.1);
         EXPECT_LE(core, fine_core * 1.01);

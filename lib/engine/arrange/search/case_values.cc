@@ -135,7 +135,7 @@ std::uint64_t CaseValues::lostWithout(const std::vector<std::size_t>& failed) co
 std::uint64_t CaseValues::valueIn(const CaseValue& of) const {
     if (of_->ways == nullptr) return values_[of.block] - lostWithout(of.failed);
     std::uint64_t seen = 0;
-    for (const WayCell& piece : of.way)
+    for (const PathCell& piece : of.way)
         if (counts_[piece.cell] >= required()) seen += piece.length;
     return seen;
 }
@@ -144,7 +144,7 @@ CaseValue CaseValues::worst() const { return worstOf(static_cast<std::size_t>(of
 
 CaseValue CaseValues::worstOf(std::size_t failures) const {
     if (of_->ways != nullptr) {
-        CellWay way = of_->ways->leastSeen(
+        CellPath way = of_->ways->leastSeen(
             [this, least = required()](std::uint32_t cell) { return counts_[cell] >= least; });
         return {0, {}, way.seen, std::move(way.cells)};
     }
@@ -174,7 +174,7 @@ void CaseValues::gains(const CaseValue& in, std::size_t kind,
     const std::uint32_t least = required();
     const auto added = static_cast<std::uint32_t>(fails ? 1 : problem.kinds[kind].multiplicity);
     gains.assign(problem.cells(), 0);
-    for (const WayCell& piece : in.way)
+    for (const PathCell& piece : in.way)
         if (counts_[piece.cell] < least && counts_[piece.cell] + added >= least)
             gains[piece.cell] = piece.length;
     if (of_->ways != nullptr) return;

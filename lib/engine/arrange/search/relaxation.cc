@@ -11,7 +11,7 @@ namespace ispace {
 
 namespace {
 
-constexpr std::size_t kMaxWays = 20'000;
+constexpr std::size_t kMaxPaths = 20'000;
 
 /// Computes the largest multiplicity that all sensors together can give a cell.
 std::uint64_t maxMultiplicityOf(const Problem& problem) {
@@ -96,7 +96,7 @@ void CountChoice::list(std::vector<std::size_t>& counts, std::size_t kind, doubl
     if (kind + 1 == counts.size()) {
         counts[kind] = most;
         ways_.push_back(counts);
-        is_listed_ = ways_.size() <= kMaxWays;
+        is_listed_ = ways_.size() <= kMaxPaths;
         return;
     }
     for (std::size_t n = most + 1; n-- > 0;) {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "arrange/search/cell_ways.h"
+#include "arrange/search/cell_paths.h"
 #include "arrange/search/problem.h"
 #include "arrange/search/search.h"
 #include "base/cell_set.h"
@@ -34,7 +34,7 @@ struct WorstCaseProblem {
     int failures = 0;
     std::vector<CellSet> standing = {};  ///< with failures: cells of each standing sensor
     std::uint64_t least_total = 0;       ///< with failures: see FailureProblem
-    const CellWays* ways = nullptr;
+    const CellPaths* ways = nullptr;
     std::uint64_t shortest = 0;  ///< with ways: the least seen way if all cells are covered
 
     /// Returns the weight of a block; with ways the length of the shortest one.
@@ -65,7 +65,7 @@ struct CaseValue {
     std::size_t block = 0;
     std::vector<std::size_t> failed = {};  ///< standing sensors first, then the chosen ones
     std::uint64_t value = 0;
-    std::vector<WayCell> way = {};  ///< with ways: its cells
+    std::vector<PathCell> way = {};  ///< with ways: its cells
 };
 
 /// Cells of a problem that a placed sensor sees.

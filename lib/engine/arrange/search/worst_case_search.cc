@@ -118,7 +118,7 @@ class WorstCaseSearch {
             take({*of_.problem, of_.totalOf(0), of_.least_total});
             if (!isClosed()) takeFewer();
         } else if (of_.ways != nullptr) {
-            takeWays();
+            takePaths();
         } else {
             takeMeans();
         }
@@ -195,9 +195,9 @@ class WorstCaseSearch {
     }
 
     /// Plays ways against the layouts.
-    void takeWays() {
+    void takePaths() {
         const int rounds = options_.optimizer == Optimizer::Greedy ? 4 : is_exact_ ? 24 : 12;
-        std::vector<CellWay> ways = waysApart();
+        std::vector<CellPath> ways = waysApart();
         for (int round = 0; round < rounds; ++round) {
             if (round > 0 && (progress_.stopped() || isClosed())) return;
             const auto mean = meanOf(ways);
@@ -211,30 +211,31 @@ class WorstCaseSearch {
     }
 
     /// Finds ways that avoid the cells of those before as far as they can.
-    [[nodiscard]] std::vector<CellWay> waysApart() const {
-        constexpr std::size_t kMaxWays = 16;
-        std::vector<CellWay> ways;
+    [[nodiscard]] std::vector<CellPath> waysApart() const {
+        constexpr std::size_t kMaxPaths = 16;
+        std::vector<CellPath> ways;
         CellSet taken(of_.problem->cells());
-        while (ways.size() < kMaxWays) {
+        while (ways.size() < kMaxPaths) {
             ways.push_back(
                 of_.ways->leastSeen([&taken](std::uint32_t cell) { return taken.test(cell); }));
             if (ways.size() > 1 && 2 * ways.back().seen > of_.shortest) break;
-            for (const WayCell& piece : ways.back().cells) taken.set(piece.cell);
+            for (const PathCell& piece : ways.back().cells) taken.set(piece.cell);
         }
         return ways;
     }
 
     /// Returns the problem of the mean seen length of these ways; empty if weights leave no room.
-    [[nodiscard]] std::optional<MeanOfCases> meanOf(const std::vector<CellWay>& ways) const {
+    [[nodiscard]] std::optional<MeanOfCases> meanOf(const std::vector<CellPath>& ways) const {
         constexpr std::uint64_t kMaxTotal = 0xffffffffU;
         MeanOfCases mean{*of_.problem, 1, ways.size()};
         std::fill(mean.problem.weights.begin(), mean.problem.weights.end(), 0U);
         std::uint64_t total = 0;
-        for (const CellWay& way : ways)
-            for (const WayCell& piece : way.cells) total += piece.length;
+        for (const CellPath& way : ways)
+            for (const PathCell& piece : way.cells) total += piece.length;
         if (total > kMaxTotal) return std::nullopt;
-        for (const CellWay& way : ways)
-            for (const WayCell& piece : way.cells) mean.problem.weights[piece.cell] += piece.length;
+        for (const CellPath& way : ways)
+            for (const PathCell& piece : way.cells)
+                mean.problem.weights[piece.cell] += piece.length;
         return mean;
     }
 

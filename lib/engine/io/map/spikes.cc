@@ -51,7 +51,7 @@ class Strips {
         markRooms(resolution, keep);
         const std::size_t start = static_cast<std::size_t>(
             std::find(stays_.begin(), stays_.end(), true) - stays_.begin());
-        markWays(start);
+        markPaths(start);
         for (std::size_t i = 0; i < strips_.size(); ++i) {
             const auto& around = neighbours_[broad_.size() + i];
             const bool hangs_on = std::any_of(around.begin(), around.end(),
@@ -125,7 +125,7 @@ class Strips {
 
     /// Builds a tree over all nodes, by fewest steps from the start, and prunes branches without a
     /// marked node.
-    void markWays(std::size_t start) {
+    void markPaths(std::size_t start) {
         if (start >= stays_.size()) return;
         std::vector<std::size_t> parent(stays_.size(), stays_.size());
         std::vector<std::size_t> order{start};

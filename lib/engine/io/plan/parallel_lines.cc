@@ -22,8 +22,8 @@ constexpr double kParallel = 0.01;
 constexpr double kFacing = 0.5;
 
 /// Directions of half a turn, and those on each side of one that are parallel to it.
-constexpr std::size_t kWays = 600, kNeighbours = 2;
-constexpr double kStep = std::numbers::pi / kWays;
+constexpr std::size_t kPaths = 600, kNeighbours = 2;
+constexpr double kStep = std::numbers::pi / kPaths;
 static_assert(kNeighbours * kStep > 1.001 * kParallel);
 
 /// Lines found that cost as much as a search.
@@ -33,7 +33,7 @@ std::size_t wayOf(const Segment2& line) {
     const Vec2 v = line.b - line.a;
     double turn = std::atan2(v.y, v.x);
     if (turn < 0) turn += std::numbers::pi;
-    return static_cast<std::size_t>(turn / kStep) % kWays;
+    return static_cast<std::size_t>(turn / kStep) % kPaths;
 }
 
 Box2 boxIn(Vec2 along, const Segment2& line) {
@@ -66,7 +66,7 @@ ParallelLines::ParallelLines(std::span<const Segment2> lines) : lines_(lines) {
         std::vector<Box2> boxes;
         boxes.reserve(own.size());
         for (const std::size_t i : own) boxes.push_back(boxIn(along, lines[i]));
-        ways_.emplace(way, Way{along, BoxTree(boxes), std::move(own)});
+        ways_.emplace(way, Path{along, BoxTree(boxes), std::move(own)});
     }
 }
 
@@ -91,8 +91,8 @@ std::optional<double> ParallelLines::otherSide(const Segment2& line, double scal
     };
     unpaid_ += kSearch;
     const std::size_t own = wayOf(line);
-    for (std::size_t turn = kWays - kNeighbours; turn <= kWays + kNeighbours; ++turn) {
-        const auto way = ways_.find((own + turn) % kWays);
+    for (std::size_t turn = kPaths - kNeighbours; turn <= kPaths + kNeighbours; ++turn) {
+        const auto way = ways_.find((own + turn) % kPaths);
         if (way == ways_.end()) continue;
         const Box2 box = boxIn(way->second.along, line);
         const Vec2 aside{0, nearest};

@@ -30,15 +30,15 @@ class ParallelLines {
     std::optional<double> otherSide(const Segment2& line, double scale, Budget& work);
 
   private:
-    struct Way {
+    struct Path {
         Vec2 along;
         BoxTree tree;
         std::vector<std::size_t> lines;
     };
 
     std::span<const Segment2> lines_;
-    std::map<std::size_t, Way> ways_;  // by direction
-    std::size_t unpaid_ = 0;           // lines found, less than a unit of work
+    std::map<std::size_t, Path> ways_;  // by direction
+    std::size_t unpaid_ = 0;            // lines found, less than a unit of work
 };
 
 /// Returns the share of a polygon's length along which it is the side of a wall. O(n log n)

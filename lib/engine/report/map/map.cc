@@ -189,7 +189,7 @@ Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptio
     drawRun(picture, map);
     picture.pop();
     picture.pushLayer("ways seen least");
-    drawLeastSeenWays(picture, map);
+    drawLeastSeenPaths(picture, map);
     picture.pop();
     drawMarks(picture, map, frame);
     picture.pushLayer("frame");

@@ -19,7 +19,7 @@ std::string comparisonOf(const std::string& now, const std::string& before, bool
                          int width = 1200) {
     const Scene scene = sceneOf("ispace size=8,8\n" + now);
     const Scene other_scene = sceneOf("ispace size=8,8\n" + before);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const CoverageOptions options{.exact = exact};
     Coverage coverage = measureCoverage(scene, worlds, options);
     const Coverage other = measureCoverage(other_scene, worlds, options);
@@ -50,7 +50,7 @@ TEST(MapFloor, ShadesOfManyDepthsAreThoseOfAllDepths) {
     }
     const Scene scene =
         sceneOf("ispace size=8,8\nwall from=-1,-4 to=-1,1\ncube at=2,2 size=0.5\n" + lasers);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Coverage all = measureCoverage(scene, worlds, {});
     CoverageOptions options;
     options.keep_depths = false;
@@ -68,7 +68,7 @@ TEST(MapFloor, ShadesOfManyDepthsAreThoseOfAllDepths) {
 TEST(MapFloor, NoSeamsByCellsNorExact) {
     for (const bool exact : {false, true}) {
         const Scene scene = sceneOf("ispace size=8,8\nlaser at=0,0 fov=360 range=20\n");
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const Coverage coverage = measureCoverage(scene, worlds, {.exact = exact});
         EXPECT_EQ(coverage.overlay.has_value(), exact);
         const PlanPixels pixels(drawCoverageMap(scene, coverage, {}), 8);
@@ -152,7 +152,7 @@ TEST(MapFloor, SensorsHaveTheirColoursAndShareStripes) {
     const std::string lines = "ispace size=8,8\n" + kRight + kUpRight;
     for (const bool exact : {false, true}) {
         const Scene scene = sceneOf(lines);
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         const Coverage coverage = measureCoverage(scene, worlds, {.exact = exact});
         const MapOptions options{.color = MapColor::Sensor};
         const MapPicture map{scene, coverage, options};
@@ -223,7 +223,7 @@ TEST(MapFloor, ComparedWithItselfNothingIsGainedOrLost) {
 
 TEST(MapFloor, ComparisonsFallBackToCellsWhereOneIsNotExact) {
     const Scene scene = sceneOf("ispace size=8,8\n" + kRight);
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Coverage exact = measureCoverage(scene, worlds, {});
     const Coverage cells = measureCoverage(scene, worlds, {.exact = false});
     // The same layout: no fringe where steps of cells would leave the exact outline.

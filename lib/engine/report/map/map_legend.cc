@@ -379,7 +379,7 @@ std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
     if (map.options.run != nullptr) blocks.push_back(runBlock(*map.options.run));
     if (const ObjectiveFigures* figures = map.options.objectives;
         figures != nullptr && !figures->ways.empty())
-        blocks.push_back(leastSeenWaysBlock(*figures));
+        blocks.push_back(leastSeenPathsBlock(*figures));
     if (markedSpots(map) > 0) blocks.push_back(spotsBlock(map));
     if (!report.zones.empty()) blocks.push_back(zonesBlock(report, map.terse));
     if (!map.terse) blocks.push_back(planBlock(contents, map.coverage.target.height));

@@ -76,7 +76,7 @@ TEST(MapMarks, SensorsAtOnePlaceAreBothSeen) {
 TEST(MapMarks, OtherSensorsAreHollowAndGrey) {
     const Scene scene = sceneOf("ispace size=8,8\nlaser at=-2,0\n");
     const Scene other_scene = sceneOf("ispace size=8,8\nranger at=2,0,1\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     Coverage coverage = measureCoverage(scene, worlds, {});
     const Coverage other = measureCoverage(other_scene, worlds, {});
     compare(coverage, other, scene.environment.indoor(), "old");

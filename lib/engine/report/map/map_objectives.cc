@@ -21,11 +21,11 @@ Stroke pieceStroke(bool is_seen, double em) {
 
 }  // namespace
 
-void drawLeastSeenWays(Picture& picture, const MapPicture& map) {
+void drawLeastSeenPaths(Picture& picture, const MapPicture& map) {
     if (map.options.objectives == nullptr) return;
     std::array<std::vector<std::vector<Point2>>, kPieceColors.size()> chains;
-    for (const LeastSeenWay& way : map.options.objectives->ways)
-        for (const LeastSeenWay::Piece& piece : way.pieces) {
+    for (const LeastSeenPath& way : map.options.objectives->ways)
+        for (const LeastSeenPath::Piece& piece : way.pieces) {
             auto& some = chains[piece.is_seen ? 1 : 0];
             if (some.empty() || !(some.back().back() == piece.from)) some.push_back({piece.from});
             some.back().push_back(piece.to);
@@ -38,13 +38,13 @@ void drawLeastSeenWays(Picture& picture, const MapPicture& map) {
     picture.pop();
 }
 
-LegendBlock leastSeenWaysBlock(const ObjectiveFigures& figures) {
+LegendBlock leastSeenPathsBlock(const ObjectiveFigures& figures) {
     using Sign = LegendItem::Sign;
     LegendBlock block{"Ways that are seen least", {}};
     block.items.push_back({Sign::Line, Color::rgb(kPieceColors[1]), {}, "seen", ""});
     block.items.push_back(
         {Sign::Dashes, Color::rgb(kPieceColors[0]), {}, "unseen, or in a zone", ""});
-    for (const LeastSeenWay& way : figures.ways)
+    for (const LeastSeenPath& way : figures.ways)
         block.items.push_back({Sign::None,
                                {},
                                {},

@@ -216,9 +216,9 @@ LegendBlock runBlock(const RunCoverage& run);
 // Ways of intruders (map_objectives.cc).
 
 /// Draws the ways that are seen least on top of the plan, below the sensors' marks.
-void drawLeastSeenWays(Picture& picture, const MapPicture& map);
+void drawLeastSeenPaths(Picture& picture, const MapPicture& map);
 /// \pre there are ways
-LegendBlock leastSeenWaysBlock(const ObjectiveFigures& figures);
+LegendBlock leastSeenPathsBlock(const ObjectiveFigures& figures);
 
 std::vector<LegendBlock> legendBlocks(const MapPicture& map);
 /// Returns the main metrics, the most important first, for the subtitle.

@@ -21,7 +21,7 @@ namespace ispace {
 namespace {
 
 Coverage coverageFor(const Scene& scene) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, {});
 }
 
@@ -254,7 +254,7 @@ TEST(SensorPictures, AreDrawnOfFlatAndTinyPictures) {
             sceneOf(std::string("#env 1\nispace id=hall at=4,3 size=8,6,2.5\nzone id=z at=2,2 "
                                 "size=1,1\ncamera id=c ") +
                     keys + '\n');
-        Worlds worlds(scene.environment);
+        RayScenes worlds(scene.environment);
         CoverageOptions options;
         options.plane = 1.6;
         const auto figures = sensorPictures(scene, measureCoverage(scene, worlds, options));
@@ -284,7 +284,7 @@ TEST(CameraSheets, FitOnOneSheetOfEitherPaper) {
         "camera id=camera1 at=0.2,0.2,2.4 heading=45 tilt=-30 pixels=1920,1080\n"
         "camera id=c2 at=7.8,0.2,2.4 heading=135 tilt=-30 pixels=640,480\n"
         "camera id=c3 at=4,3,2.4 projection=fisheye fov=180 tilt=-90 pixels=480,480\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const Coverage coverage = measureCoverage(scene, worlds, {});
     std::vector<PageFigure> figures = sensorPictures(scene, coverage);
     const PageTable table = installationTable(scene, coverage, installationsOf(scene), {});
@@ -309,7 +309,7 @@ TEST(CameraSheets, HaveTheFloorOfCamerasInBuildings) {
     const Scene scene = sceneOf(
         "#env 1\nispace id=hall at=4,3 size=8,8,2.5\n"
         "laser id=l at=1,1\ncamera id=c at=0.2,0.2,2.4 heading=45 tilt=-30 pixels=640,480\n");
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     Coverage coverage = measureCoverage(scene, worlds, {});
     // Ids name the storey there, but those of the scene do not.
     for (SensorView& view : coverage.sensors) view.id.insert(0, "ground/");

@@ -117,7 +117,7 @@ Picture RunPicture::page(bool is_film) const {
     return picture;
 }
 
-void RunPicture::drawWays(Picture& picture, bool newest_only) const {
+void RunPicture::drawPaths(Picture& picture, bool newest_only) const {
     picture.pushView(view_);
     for (std::size_t i = 0; i < members_.size(); ++i) {
         const Member& member = members_[i];
@@ -192,7 +192,7 @@ void RunPicture::drawLegend(Picture& picture) const {
 std::string RunPicture::write(PictureFormat format) const {
     Picture picture = page(false);
     picture.pushLayer("ways");
-    drawWays(picture, false);
+    drawPaths(picture, false);
     picture.pop();
     picture.pushLayer("stalls");
     drawStalls(picture);
@@ -211,7 +211,7 @@ Image RunPicture::frame() {
     const double width = canvas_.width, height = canvas_.height;
     Picture ways(width, height);
     ways.image({0, 0}, std::move(canvas_), 1, 1);
-    drawWays(ways, true);
+    drawPaths(ways, true);
     drawStalls(ways);
     stalls_.clear();
     for (Member& member : members_) member.drawn = member.way.size();

@@ -48,7 +48,7 @@ class RunPicture {
 
     void meet(const RunMember& member);
     [[nodiscard]] Picture page(bool is_film) const;
-    void drawWays(Picture& picture, bool newest_only) const;
+    void drawPaths(Picture& picture, bool newest_only) const;
     void drawStalls(Picture& picture) const;
     void drawMembers(Picture& picture) const;
     void drawLegend(Picture& picture) const;

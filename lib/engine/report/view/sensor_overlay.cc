@@ -148,7 +148,7 @@ class Sightlines {
     }
 
   private:
-    Worlds worlds_;
+    RayScenes worlds_;
     MovingBodies bodies_;
     Box2 plan_;
     double height_, reach_ = 0;
@@ -258,7 +258,7 @@ FloorColors::FloorColors(const Scene& scene) : limits_(scene.environment.limits(
     columns_ = std::max(1, static_cast<int>(std::ceil(scale_ * limits_.width())));
     rows_ = std::max(1, static_cast<int>(std::ceil(scale_ * limits_.depth())));
     sums_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const VisibleArea sight(scene.environment, 0, &worlds);
     constexpr int kCells = 400;
     const double cell = std::max(limits_.width(), limits_.depth()) / kCells;

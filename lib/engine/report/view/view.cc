@@ -9,7 +9,7 @@
 #include "base/message.h"
 #include "drawing/drawing.h"
 #include "report/view/sensor_overlay.h"
-#include "sense/warnings.h"
+#include "sense/burial.h"
 #include "trace/render/render.h"
 
 namespace ispace {
@@ -55,7 +55,7 @@ class ViewDrawer {
             marks_ = sightMarks(scene_, options_.show == OverlayLayers::Beams,
                                 standpoint_.looks_in ? std::nullopt : standpoint_.place,
                                 options_.swings);
-        for (const std::vector<Point2>& way : options_.ways) addWay(way);
+        for (const std::vector<Point2>& way : options_.ways) addPath(way);
         render();
         if (options_.show == OverlayLayers::Area) colorFloor();
         Picture page(size_.columns, size_.rows);
@@ -161,7 +161,7 @@ class ViewDrawer {
     }
 
     /// Adds a line just above the floor.
-    void addWay(const std::vector<Point2>& way) {
+    void addPath(const std::vector<Point2>& way) {
         SensorOverlay::Line line{{}, palette::kRobot.faded(0.8), 2.5};
         for (const Point2& p : way) line.places.push_back({p.x, p.y, 0.01});
         marks_.lines.push_back(std::move(line));

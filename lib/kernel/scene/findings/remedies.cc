@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMoves[] = {0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5};  // metres
 constexpr double kDepths[] = {0.05, 0.3, 0.6, 1.2};  // behind the edge of the room, metres
-constexpr int kWays = 16;
+constexpr int kPaths = 16;
 
 /// Rounds away from 0, so that a gap stays open.
 double centimetres(double metres) {
@@ -32,8 +32,8 @@ std::vector<Vec3> movesFrom(const Environment& environment, Point3 from) {
     const Point2 at = from.onFloor();
     std::vector<Vec2> moves = {{0, 0}};
     for (const double far : kMoves)
-        for (int i = 0; i < kWays; ++i)
-            moves.push_back(far * unitVector(Angle::degrees(i * 360.0 / kWays)));
+        for (int i = 0; i < kPaths; ++i)
+            moves.push_back(far * unitVector(Angle::degrees(i * 360.0 / kPaths)));
     std::optional<Vec2> in;  // to the nearest edge of the room
     for (const Polygon& curve : curvesOf(environment.indoor()))
         forEachEdge(curve, [&](const Segment2& edge) {

@@ -10,7 +10,7 @@
 
 #include "passage/cabin.h"
 #include "passage/lift.h"
-#include "sim/way_finder.h"
+#include "sim/path_finder.h"
 #include "site/site_scene.h"
 
 namespace ispace {
@@ -51,7 +51,7 @@ struct Landing {
     bool is_tight = false;      ///< bodies are so near that steering would avoid it
     std::vector<Point2> spots;  ///< where movers wait, the best first
     bool waits_in_way = false;  ///< all spots are in the ways of those that come off stairs
-    WayFinder::Field ways;      ///< from there
+    PathFinder::Field ways;     ///< from there
 };
 
 /// A passage on the way.
@@ -74,10 +74,10 @@ struct MoverAbility {
 };
 
 /// The storeys of a building as movers of one size see them. Computes the ways from all landings.
-class StoreyWays {
+class StoreyPaths {
   public:
-    StoreyWays(const SiteScene& building, const std::vector<StoreyLink>& passages,
-               const MoverSize& size);
+    StoreyPaths(const SiteScene& building, const std::vector<StoreyLink>& passages,
+                const MoverSize& size);
 
     /// Returns the width in metres in which a mover walks freely, and that in which it passes one
     /// that waits beside its way.
@@ -86,7 +86,7 @@ class StoreyWays {
 
     [[nodiscard]] const std::vector<Landing>& landings() const { return landings_; }
     [[nodiscard]] const Landing* landing(std::size_t passage, std::size_t stop) const;
-    [[nodiscard]] const WayFinder& finder(std::size_t storey) const { return finders_[storey]; }
+    [[nodiscard]] const PathFinder& finder(std::size_t storey) const { return finders_[storey]; }
     [[nodiscard]] const Obstacles& obstacles(std::size_t storey) const {
         return obstacles_[storey];
     }
@@ -115,7 +115,7 @@ class StoreyWays {
     const std::vector<StoreyLink>* passages_;
     MoverSize size_;
     std::vector<Obstacles> obstacles_;
-    std::vector<WayFinder> finders_;
+    std::vector<PathFinder> finders_;
     std::vector<Landing> landings_;
 };
 

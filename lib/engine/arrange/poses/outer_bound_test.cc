@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ struct Seen {
     }
 };
 
-TEST(FatView, AFloorInCellsHasItsArea) {
+TEST(OuterBound, AFloorInCellsHasItsArea) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     EXPECT_NEAR(floor.area(), region.area(), 1e-12);
@@ -48,7 +48,7 @@ TEST(FatView, AFloorInCellsHasItsArea) {
     EXPECT_LE(areaOf(floor, floor.parts()), region.area() * 1.005);
 }
 
-TEST(FatView, AViewFromAPointHasItsExactArea) {
+TEST(OuterBound, AViewFromAPointHasItsExactArea) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     const Seen seen(region);
@@ -61,14 +61,14 @@ TEST(FatView, AViewFromAPointHasItsExactArea) {
             const Sector sector{3, field, -field / 2};
             const double heading = turn(random);
             const double exact = area(seen.from(p, sector, heading));
-            const FatView view = fatViewOf(floor, sector, {{p, p}, heading, 0});
+            const OuterBound view = outerBoundOf(floor, sector, {{p, p}, heading, 0});
             EXPECT_GE(view.area, exact - 1e-9);
             EXPECT_LE(view.area, exact * 1.01 + 0.02) << p.x << ' ' << p.y << ' ' << field;
             EXPECT_GE(areaOf(floor, view.parts), exact - 1e-6);
         }
 }
 
-TEST(FatView, HoldsAllViewsOfItsPosesAndLittleElse) {
+TEST(OuterBound, HoldsAllViewsOfItsPosesAndLittleElse) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     const Seen seen(region);
@@ -80,7 +80,7 @@ TEST(FatView, HoldsAllViewsOfItsPosesAndLittleElse) {
                 const Sector sector{3.5, field, -field / 2};
                 const Point2 low{x(random), y(random)};
                 const PoseBox box{{low, low + Vec2{side, side}}, turn(random), side / 2};
-                const FatView view = fatViewOf(floor, sector, box);
+                const OuterBound view = outerBoundOf(floor, sector, box);
                 std::vector<std::uint8_t> all(floor.parts().size());
                 double largest = 0;
                 for (int k = 0; k < 300; ++k) {
@@ -88,7 +88,7 @@ TEST(FatView, HoldsAllViewsOfItsPosesAndLittleElse) {
                     if (region.locate(p) != Side::Inside) continue;
                     const double heading = box.from + unit(random) * box.span;
                     largest = std::max(largest, area(seen.from(p, sector, heading)));
-                    const FatView one = fatViewOf(floor, sector, {{p, p}, heading, 0});
+                    const OuterBound one = outerBoundOf(floor, sector, {{p, p}, heading, 0});
                     for (std::size_t c = 0; c < all.size(); ++c) {
                         all[c] = std::max(all[c], one.parts[c]);
                         // Parts are rounded up.
@@ -104,7 +104,7 @@ TEST(FatView, HoldsAllViewsOfItsPosesAndLittleElse) {
             }
 }
 
-TEST(FatView, AFieldOfAHalfTurnWithItsHeadings) {
+TEST(OuterBound, AFieldOfAHalfTurnWithItsHeadings) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 5000);
     const Seen seen(region);
@@ -112,7 +112,7 @@ TEST(FatView, AFieldOfAHalfTurnWithItsHeadings) {
         for (int turn = 0; turn < 4; ++turn) {
             const Sector sector{2, kPi / 2, 0};
             const double heading = turn * kPi / 2;
-            const FatView view = fatViewOf(floor, sector, {{{2, 2}, {3, 3}}, heading, span});
+            const OuterBound view = outerBoundOf(floor, sector, {{{2, 2}, {3, 3}}, heading, span});
             // The sector in the middle of these headings, from the middle of the box.
             EXPECT_GE(view.area, area(seen.from({2.5, 2.5}, sector, heading + kPi / 4)));
             EXPECT_GE(areaOf(floor, view.parts), kPi * 2 * 2 / 2 + 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/warnings.h"
+#include "sense/burial.h"
 
 namespace ispace {
 

@@ -164,7 +164,7 @@ class PoseFloor {
 };
 
 /// Bounds of the floor that single poses of a box see.
-struct FatView {
+struct OuterBound {
     double area = 0;  ///< m2, times weight: an upper bound of what any pose of the box sees
     std::vector<std::uint8_t> parts;  ///< of cells; every point seen by some pose lies in them
     [[nodiscard]] bool empty() const { return parts.empty(); }
@@ -173,7 +173,7 @@ struct FatView {
 /// Computes a superset of the points that some pose of the box sees, on the floor: those in weak
 /// visibility of the rectangle through the portals of the triangulation, within range of it, and in
 /// its field of view at some heading. Empty if the box holds no floor.
-FatView fatViewOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box);
+OuterBound outerBoundOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box);
 /// Returns the weighted area of that superset, or a little more, in less time; 0 if the box holds
 /// no floor.
 double fatAreaOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/least_seen_way.h"
+#include "coverage/least_seen_path.h"
 
 #include <gtest/gtest.h>
 
@@ -23,70 +23,70 @@ const std::string kCorridor =
     "ispace size=12,2,3\nzone id=a path=-6,-1;-5,-1;-5,1;-6,1\nzone id=b path=5,-1;6,-1;6,1;5,1\n";
 
 Coverage measuredFor(const Scene& scene, double cell = 0.2) {
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, {.cells = CellSize{cell}});
 }
 
-LeastSeenWay wayIn(const std::string& lines, const std::string& between = "a,b", int times = 1) {
+LeastSeenPath wayIn(const std::string& lines, const std::string& between = "a,b", int times = 1) {
     const Scene scene = sceneOf(lines);
-    return findLeastSeenWay(scene, measuredFor(scene), parseWay(between), times);
+    return findLeastSeenPath(scene, measuredFor(scene), parseWay(between), times);
 }
 
-double sumOf(const LeastSeenWay& way, bool is_seen) {
+double sumOf(const LeastSeenPath& way, bool is_seen) {
     double sum = 0;
-    for (const LeastSeenWay::Piece& piece : way.pieces)
+    for (const LeastSeenPath::Piece& piece : way.pieces)
         if (piece.is_seen == is_seen) sum += distance(piece.from, piece.to);
     return sum;
 }
 
-TEST(LeastSeenWay, ParsesTwoZones) {
+TEST(LeastSeenPath, ParsesTwoZones) {
     EXPECT_EQ(parseWay("a,b").from, "a");
     EXPECT_EQ(parseWay("a,b").to, "b");
     for (const char* text : {"", "a", "a,", ",b", "a,b,c"})
         EXPECT_THROW(parseWay(text), UsageError) << text;
 }
 
-TEST(LeastSeenWay, IsUnseenWithoutSensors) {
-    const LeastSeenWay way = wayIn(kCorridor);
+TEST(LeastSeenPath, IsUnseenWithoutSensors) {
+    const LeastSeenPath way = wayIn(kCorridor);
     EXPECT_TRUE(way.exists);
     EXPECT_EQ(way.seen, 0);
     EXPECT_NEAR(way.length, 11, 1e-4) << "between inner points of the zones";
 }
 
-TEST(LeastSeenWay, IsAllOfTheWayBetweenZonesInFullSight) {
-    const LeastSeenWay way = wayIn(kCorridor + "laser id=l at=0,0 range=20 fov=360\n");
+TEST(LeastSeenPath, IsAllOfTheWayBetweenZonesInFullSight) {
+    const LeastSeenPath way = wayIn(kCorridor + "laser id=l at=0,0 range=20 fov=360\n");
     EXPECT_NEAR(way.seen.value(), 10, 1e-9);
     EXPECT_NEAR(sumOf(way, true), 10, 1e-9);
 }
 
-TEST(LeastSeenWay, KeepsToTheWallFarthestFromASensor) {
+TEST(LeastSeenPath, KeepsToTheWallFarthestFromASensor) {
     // The circle of 2.5 m about a point 1.5 m from the north wall cuts it 2 m to either side.
-    const LeastSeenWay way = wayIn(kCorridor + "laser id=l at=0,-0.5 range=2.5 fov=360\n");
+    const LeastSeenPath way = wayIn(kCorridor + "laser id=l at=0,-0.5 range=2.5 fov=360\n");
     EXPECT_NEAR(way.seen.value(), 4, 1e-3);
     EXPECT_NEAR(sumOf(way, true), *way.seen, 1e-9);
     EXPECT_NEAR(sumOf(way, true) + sumOf(way, false), way.length, 1e-9);
-    for (const LeastSeenWay::Piece& piece : way.pieces)
+    for (const LeastSeenPath::Piece& piece : way.pieces)
         if (piece.is_seen) {
             EXPECT_NEAR(piece.from.y, 1, 1e-3);
         }
 }
 
-TEST(LeastSeenWay, PassesASensorThatDoesNotReachAcross) {
-    const LeastSeenWay way = wayIn(kCorridor + "laser id=l at=0,-0.5 range=1.4 fov=360\n");
+TEST(LeastSeenPath, PassesASensorThatDoesNotReachAcross) {
+    const LeastSeenPath way = wayIn(kCorridor + "laser id=l at=0,-0.5 range=1.4 fov=360\n");
     EXPECT_EQ(way.seen, 0);
 }
 
-TEST(LeastSeenWay, CrossesTheShadowsOfPillars) {
+TEST(LeastSeenPath, CrossesTheShadowsOfPillars) {
     // The sensor in the west sees between the pillars; in their shadows the way is free.
     const std::string room = kCorridor + "laser id=l at=-5.9,0 range=20 fov=360\n";
     const double open = wayIn(room).seen.value();
-    const LeastSeenWay way = wayIn(room + "pillar id=p at=-2,0.5 size=1,1,3\n");
+    const LeastSeenPath way = wayIn(room + "pillar id=p at=-2,0.5 size=1,1,3\n");
     EXPECT_NEAR(open, 10, 1e-9);
     EXPECT_LT(way.seen.value(), 4);
     EXPECT_GT(way.seen.value(), 2);
 }
 
-TEST(LeastSeenWay, CountsSightByAsManySensorsAsAreAskedFor) {
+TEST(LeastSeenPath, CountsSightByAsManySensorsAsAreAskedFor) {
     const std::string room = kCorridor +
                              "laser id=l at=0,-0.5 range=2.5 fov=360\n"
                              "laser id=m at=3,-0.5 range=2.5 fov=360\n";
@@ -95,7 +95,7 @@ TEST(LeastSeenWay, CountsSightByAsManySensorsAsAreAskedFor) {
     EXPECT_NEAR(wayIn(room, "a,b", 2).seen.value(), 1, 1e-3);
 }
 
-TEST(LeastSeenWay, EndsWhereZonesTouchOrOverlap) {
+TEST(LeastSeenPath, EndsWhereZonesTouchOrOverlap) {
     const std::string zones =
         "ispace size=12,2,3\nzone id=a path=-6,-1;0,-1;0,1;-6,1\nzone id=b "
         "path=0,-1;6,-1;6,1;0,1\nzone id=c path=-1,-1;6,-1;6,1;-1,1\n"
@@ -105,23 +105,23 @@ TEST(LeastSeenWay, EndsWhereZonesTouchOrOverlap) {
     EXPECT_EQ(wayIn(zones, "a,a").seen, 0);
 }
 
-TEST(LeastSeenWay, TellsOfZonesThatNoWayJoins) {
-    const LeastSeenWay way = wayIn(kCorridor + "pillar id=p at=0,0 size=0.2,2,3\n");
+TEST(LeastSeenPath, TellsOfZonesThatNoWayJoins) {
+    const LeastSeenPath way = wayIn(kCorridor + "pillar id=p at=0,0 size=0.2,2,3\n");
     EXPECT_FALSE(way.exists);
     EXPECT_FALSE(way.seen);
     EXPECT_TRUE(way.pieces.empty());
 }
 
-TEST(LeastSeenWay, RejectsUnknownAndCoveredZones) {
+TEST(LeastSeenPath, RejectsUnknownAndCoveredZones) {
     EXPECT_THROW(wayIn(kCorridor, "a,c"), UsageError);
     EXPECT_THROW(wayIn(kCorridor + "zone id=o at=40,0 size=1,1\n", "a,o"), UsageError);
     EXPECT_THROW(wayIn(kCorridor + "pillar id=p at=5.5,0 size=1,2,3\n"), UsageError);
 }
 
 /// Finds the way over a lattice whose points see those up to `kReach` steps away.
-class LatticeWay {
+class LatticePath {
   public:
-    LatticeWay(const Scene& scene, const Coverage& coverage, double step)
+    LatticePath(const Scene& scene, const Coverage& coverage, double step)
         : scene_(scene), coverage_(coverage), step_(step) {
         const Box2& box = scene.environment.limits();
         columns_ = static_cast<int>(box.width() / step) + 1;
@@ -202,7 +202,7 @@ class LatticeWay {
     std::vector<bool> free_, seen_;
 };
 
-TEST(LeastSeenWay, AgreesWithALatticeInRandomRooms) {
+TEST(LeastSeenPath, AgreesWithALatticeInRandomRooms) {
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         std::mt19937_64 random(seed);
         const auto number = [&random](double low, double high) {
@@ -222,10 +222,10 @@ TEST(LeastSeenWay, AgreesWithALatticeInRandomRooms) {
                      " range=" + std::to_string(number(2, 5)) + " fov=360\n";
         const Scene scene = sceneOf(lines);
         const Coverage coverage = measuredFor(scene);
-        const LeastSeenWay way = findLeastSeenWay(scene, coverage, {"a", "b"});
+        const LeastSeenPath way = findLeastSeenPath(scene, coverage, {"a", "b"});
         ASSERT_TRUE(way.seen) << lines;
         const double step = 0.05;
-        const double lattice = LatticeWay(scene, coverage, step)
+        const double lattice = LatticePath(scene, coverage, step)
                                    .between({{-5, -1}, {-4, -1}, {-4, 1}, {-5, 1}},
                                             {{4, -3}, {5, -3}, {5, 3}, {4, 3}});
         ASSERT_GE(lattice, 0);
@@ -236,7 +236,7 @@ TEST(LeastSeenWay, AgreesWithALatticeInRandomRooms) {
 }
 
 /// The default wall has no thickness; the way leads round its end.
-TEST(LeastSeenWay, LeadsRoundWallsWithoutThickness) {
+TEST(LeastSeenPath, LeadsRoundWallsWithoutThickness) {
     const std::string room =
         "ispace size=8,6,3\nzone id=a path=-2,-1;-1,-1;-1,0;-2,0\n"
         "zone id=b path=1,-1;2,-1;2,0;1,0\n"

@@ -18,7 +18,7 @@
 namespace ispace {
 
 /// A world of a run.
-struct JoinedRoom {
+struct RunRoom {
     std::string id;                    ///< "": the only one, see SoleWorld
     Simulation* simulation = nullptr;  ///< the first one leads the others
 };
@@ -54,7 +54,7 @@ struct ParsedTrip {
 /// Parses the words of `GOTO upper/1,2,90 speed=0.3`, or of `PATH upper/1,2;3,4` with the keys of
 /// PATH. A point without a room is one of that of the point before, at first of `room`. \pre there
 /// are two words or more
-ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const JoinedRoom> rooms,
+ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const RunRoom> rooms,
                      std::size_t room);
 
 /// A trip that was asked for, or the reason why it cannot begin.
@@ -93,7 +93,7 @@ struct PassageOutline {
 };
 
 /// A part of a trip that is still to come.
-struct PlannedWay {
+struct PlannedPath {
     std::string mover;
     std::vector<Point2> points = {};  ///< in the frame of its storey
 };
@@ -104,14 +104,14 @@ std::vector<RoomState> statesOf(const LiftState& lift);
 /// Worlds that step together, and between which movers go. The ids of movers, and of the sensors
 /// that they carry, are unique in all of them. The server reads the one or the many worlds of a run
 /// through this interface.
-class JoinedWorlds {
+class Worlds {
   public:
-    virtual ~JoinedWorlds() = default;
+    virtual ~Worlds() = default;
     /// Returns true if movers, lifts and records belong to all rooms together: movers come at the
     /// start, and no room is replaced or restarted by itself. Worlds then change between two steps.
     [[nodiscard]] virtual bool areCoupled() const { return true; }
     /// Returns the rooms: the storeys first, from the lowest on, then cabins and flights of stairs.
-    [[nodiscard]] virtual std::span<const JoinedRoom> rooms() const = 0;
+    [[nodiscard]] virtual std::span<const RunRoom> rooms() const = 0;
     /// Returns the room in which a robot or a person is that goes between rooms.
     [[nodiscard]] virtual std::optional<std::size_t> roomOf(std::string_view mover) const = 0;
     /// Returns the keys of a reply that tell where a mover of a room is: "storey=upper", or
@@ -123,7 +123,7 @@ class JoinedWorlds {
 
     /// Returns the ways over a storey, from where movers will leave stairs and lifts to the next
     /// ones or to their goals, in the order of the movers' ids. Empty for other rooms.
-    [[nodiscard]] virtual std::vector<PlannedWay> plannedWays(std::size_t room) const = 0;
+    [[nodiscard]] virtual std::vector<PlannedPath> plannedPaths(std::size_t room) const = 0;
 
     /// Sends a mover by the fastest way to the points of a plan. \pre the speed is one that it can
     /// go

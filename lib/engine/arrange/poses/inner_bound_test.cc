@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/poses/core_view.h"
+#include "arrange/poses/inner_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -81,7 +81,7 @@ double sumOf(const std::vector<std::uint8_t>& parts) {
     return sum;
 }
 
-TEST(CoreView, EachPoseOfTheBoxSeesIt) {
+TEST(InnerBound, EachPoseOfTheBoxSeesIt) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, kCells);
     Poses poses(region, 3);
@@ -90,13 +90,13 @@ TEST(CoreView, EachPoseOfTheBoxSeesIt) {
         for (int i = 0; i < 60; ++i) {
             const Sector sector{poses.draw(1, 8), field, -field / 2, i % 4 == 0 ? 0.5 : 0};
             const PoseBox box = poses.box(1.5, std::min(field, 3.0));
-            checked += poses.expectSeen(floor, sector, box, coreViewOf(floor, sector, box));
+            checked += poses.expectSeen(floor, sector, box, innerBoundOf(floor, sector, box));
             if (HasFailure()) return;
         }
     EXPECT_GT(checked, 100'000);
 }
 
-TEST(CoreView, OfOnePoseIsNearlyItsView) {
+TEST(InnerBound, OfOnePoseIsNearlyItsView) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, 20'000);
     Poses poses(region, 4);
@@ -104,9 +104,9 @@ TEST(CoreView, OfOnePoseIsNearlyItsView) {
         for (int i = 0; i < 20; ++i) {
             const Sector sector{3, field, -field / 2};
             PoseBox box = poses.box(0, 0);
-            const FatView view = fatViewOf(floor, sector, box);
+            const OuterBound view = outerBoundOf(floor, sector, box);
             if (view.area < 1) continue;
-            const std::vector<std::uint8_t> core = coreViewOf(floor, sector, box);
+            const std::vector<std::uint8_t> core = innerBoundOf(floor, sector, box);
             // Cells on the rim are rounded up in one and down in the other, but not out of it.
             EXPECT_GT(sumOf(core), 0.9 * sumOf(view.parts)) << box.at.low.x << ' ' << box.at.low.y;
             for (std::size_t cell = 0; cell < core.size(); ++cell)
@@ -114,7 +114,7 @@ TEST(CoreView, OfOnePoseIsNearlyItsView) {
         }
 }
 
-TEST(CoreView, OfTheCheckIsNoSmallerAndLiesInItsView) {
+TEST(InnerBound, OfTheCheckIsNoSmallerAndLiesInItsView) {
     const Region region = roomsWithPillar();
     const PoseFloor floor({&region, 1}, kCells);
     Poses poses(region, 5);
@@ -123,7 +123,7 @@ TEST(CoreView, OfTheCheckIsNoSmallerAndLiesInItsView) {
         const BoxViews views({&region, 1}, kCells, sector);
         for (int i = 0; i < 60; ++i) {
             const PoseBox box = poses.box(1.5, std::min(field, 3.0));
-            const std::vector<std::uint8_t> core = coreViewOf(floor, sector, box);
+            const std::vector<std::uint8_t> core = innerBoundOf(floor, sector, box);
             const BoxCore checked = views.coreOf(box);
             const BoxView view = views.viewOf(box);
             const auto at = [](const auto& parts, std::size_t cell) {
@@ -141,7 +141,7 @@ TEST(CoreView, OfTheCheckIsNoSmallerAndLiesInItsView) {
 
 /// Beyond the near edges of a pocket, the two sides of a line of sight may cross: there is no view,
 /// least of all behind the box.
-TEST(CoreView, OfTheCheckEndsWhereLinesOfSightEnd) {
+TEST(InnerBound, OfTheCheckEndsWhereLinesOfSightEnd) {
     const Region region{
         {{-5, 1}, {2, -1.2}, {2, 0.5}, {1, 0.5}, {-0.2, 0.5}, {-0.2, -0.1}, {1, -0.1}, {1, -0.4}},
         {}};

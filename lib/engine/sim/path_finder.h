@@ -21,15 +21,15 @@ namespace ispace {
 /// A way steps from cell to cell across sides, at a cost of 12, or corners, at 17, and is then
 /// straightened where the straight line is free. It keeps the radius and kMargin away from
 /// obstacles and from holes in the floor. Movers are ignored, but see around().
-class WayFinder {
+class PathFinder {
   public:
     static constexpr double kMargin = 0.05, kCell = 0.1;
 
     /// Tests all cells. \param box that bounds the ways; cells are larger than kCell where it has
     /// more than 250 000 \pre the obstacles outlive this object
     /// \param holes without floor
-    WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
-              const std::vector<Polygon>& holes = {});
+    PathFinder(const Obstacles& obstacles, const Box2& box, double radius,
+               const std::vector<Polygon>& holes = {});
 
     /// A circle on the floor that a mover occupies.
     struct Spot {
@@ -38,15 +38,15 @@ class WayFinder {
     };
     /// Returns a finder whose ways lead round these circles, too. Copies the cells, and tests those
     /// that a circle may reach.
-    [[nodiscard]] WayFinder around(std::span<const Spot> spots) const;
+    [[nodiscard]] PathFinder around(std::span<const Spot> spots) const;
 
     /// Ways from one point to all cells.
     struct Field {
         Point2 from;
-        std::vector<std::int32_t> cost;  ///< by cell, kNoWay without a way or unknown
+        std::vector<std::int32_t> cost;  ///< by cell, kNoPath without a way or unknown
         std::size_t expanded = 0;        ///< cells from which the search went on
     };
-    static constexpr std::int32_t kNoWay = -1;
+    static constexpr std::int32_t kNoPath = -1;
 
     /// Finds the ways from a point; no way if no cell near it is free. O(cells)
     [[nodiscard]] Field waysFrom(Point2 from) const;

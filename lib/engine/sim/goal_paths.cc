@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/goal_ways.h"
+#include "sim/goal_paths.h"
 
 #include <algorithm>
 #include <optional>
@@ -15,7 +15,7 @@ namespace ispace {
 
 namespace {
 
-/// Room besides the radius and WayFinder::kMargin, so that a walk does not brush along walls.
+/// Room besides the radius and PathFinder::kMargin, so that a walk does not brush along walls.
 constexpr double kWideSpare = 0.1;
 
 /// Room between people who stand beside each other, so that one can steer there.
@@ -162,14 +162,14 @@ std::vector<std::string> goalIds(const Scene& scene) {
     return ids;
 }
 
-GoalWays::GoalWays(const Scene& scene, Environment environment, double radius, double height)
+GoalPaths::GoalPaths(const Scene& scene, Environment environment, double radius, double height)
     : radius_(radius),
       environment_(std::move(environment)),
       obstacles_(environment_, height, nullptr),
       walls_(dividersOf(scene.environment, height)),
       things_(thingsOf(scene)) {}
 
-std::vector<const Element*> GoalWays::named(const std::string& id) const {
+std::vector<const Element*> GoalPaths::named(const std::string& id) const {
     std::vector<const Element*> found;
     for (const std::span<const Element> some :
          {std::span(environment_.elements()), std::span<const Element>(things_)})
@@ -178,22 +178,22 @@ std::vector<const Element*> GoalWays::named(const std::string& id) const {
     return found;
 }
 
-std::vector<Point2> GoalWays::way(Point2 from, const std::string& id, std::span<const Spot> others,
-                                  std::size_t* work) const {
+std::vector<Point2> GoalPaths::way(Point2 from, const std::string& id, std::span<const Spot> others,
+                                   std::size_t* work) const {
     const auto count = [work](std::size_t cells) {
         if (work != nullptr) *work += cells;
     };
     // Testing a cell against obstacles takes as long as going on from some.
     constexpr std::size_t kTest = 8;
-    const auto finder = [&](std::optional<WayFinder>& known, double spare) -> const WayFinder& {
+    const auto finder = [&](std::optional<PathFinder>& known, double spare) -> const PathFinder& {
         if (!known) {
             known.emplace(obstacles_, bounds(environment_.indoor()), radius_ + spare);
             count(kTest * known->cells());
         }
         return *known;
     };
-    const auto wide = [&]() -> const WayFinder& { return finder(wide_, kWideSpare); };
-    const auto narrow = [&]() -> const WayFinder& { return finder(narrow_, 0); };
+    const auto wide = [&]() -> const PathFinder& { return finder(wide_, kWideSpare); };
+    const auto narrow = [&]() -> const PathFinder& { return finder(narrow_, 0); };
     for (const Element* const named_so : named(id)) {
         const Element& element = *named_so;
         const auto middle = middleOf(element);
@@ -214,12 +214,12 @@ std::vector<Point2> GoalWays::way(Point2 from, const std::string& id, std::span<
         const double share = kApart / std::max(kApart, distance(from, *middle));
         const Point2 aim = is_taken(*middle) ? *middle + share * (from - *middle) : *middle;
         const Box2 limits = is_zone ? bounds(zone) : beside.limits(kReach);
-        const auto search = [&](const WayFinder& cells) {
-            const WayFinder::Approach found = cells.approach(from, aim, limits, is_suitable);
+        const auto search = [&](const PathFinder& cells) {
+            const PathFinder::Approach found = cells.approach(from, aim, limits, is_suitable);
             count(found.field.expanded + kTest * others.size());
             return found.goal ? cells.way(found.field, *found.goal) : std::vector<Point2>();
         };
-        const auto search_around = [&](const WayFinder& cells) {
+        const auto search_around = [&](const PathFinder& cells) {
             count(cells.cells() / kTest);  // copies them
             return search(cells.around(others));
         };
@@ -234,7 +234,7 @@ std::vector<Point2> GoalWays::way(Point2 from, const std::string& id, std::span<
     return {};
 }
 
-bool GoalWays::isAt(Point2 p, const std::string& id) const {
+bool GoalPaths::isAt(Point2 p, const std::string& id) const {
     const std::vector<const Element*> all = named(id);
     return std::any_of(all.begin(), all.end(), [&](const Element* element) {
         if (element->record.keyword() == "zone")

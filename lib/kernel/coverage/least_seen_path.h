@@ -14,22 +14,22 @@
 namespace ispace {
 
 /// The zones between which an intruder goes.
-struct WayChoice {
+struct PathChoice {
     std::string from, to;
 };
 
 /// Parses `entrance,vault`. \throws UsageError
-WayChoice parseWay(std::string_view text);
+PathChoice parseWay(std::string_view text);
 
 /// A way over free floor, of which a part is seen.
-struct LeastSeenWay {
+struct LeastSeenPath {
     /// A straight piece, seen or unseen from end to end; a zone counts as unseen.
     struct Piece {
         Point2 from, to;
         bool is_seen = false;
     };
 
-    WayChoice of;
+    PathChoice of;
     bool exists = true;  ///< false: no way on free floor joins the zones
     /// Length that sensors see, metres, exact; empty without a way, or if a view is known by cells
     /// only.
@@ -40,10 +40,10 @@ struct LeastSeenWay {
 
 /// Finds the way of a point between two zones, over the free floor, of which the shortest length is
 /// seen by at least `times` sensors. It begins and ends anywhere in the zones, in which sight does
-/// not count. Exact for the regions of the overlay, see leastExposedWay(). Of the ways that are
+/// not count. Exact for the regions of the overlay, see leastExposedPath(). Of the ways that are
 /// seen least it is any; its unseen parts are as short as they can be between the seen ones.
 /// \throws UsageError for an unknown zone, and for one without free floor
-LeastSeenWay findLeastSeenWay(const Scene& scene, const Coverage& coverage, const WayChoice& of,
-                              int times = 1);
+LeastSeenPath findLeastSeenPath(const Scene& scene, const Coverage& coverage, const PathChoice& of,
+                                int times = 1);
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/run/people_ways.h"
+#include "scene/run/people_paths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace ispace {
 
-std::vector<std::size_t> PeopleWays::firsts() const {
+std::vector<std::size_t> PeoplePaths::firsts() const {
     std::vector<std::size_t> firsts(people.size() + 1, pieces.size());
     for (std::size_t i = pieces.size(); i-- > 0;) firsts[pieces[i].person] = i;
     // A person without pieces has those from the next one's first to before it.
@@ -17,7 +17,7 @@ std::vector<std::size_t> PeopleWays::firsts() const {
     return firsts;
 }
 
-void WayCutter::add(const std::string& person, double time, Point2 place) {
+void PathCutter::add(const std::string& person, double time, Point2 place) {
     constexpr double kFastest = 12;  // m/s: no person runs faster
     // Callers add the people of one moment after another, in one order.
     for (std::size_t k = 0; k < ways_.size(); ++k) {
@@ -28,11 +28,11 @@ void WayCutter::add(const std::string& person, double time, Point2 place) {
         last_ = ways_.size();
         ways_.push_back({.id = person, .place = place});
     }
-    Way& way = ways_[last_];
+    Path& way = ways_[last_];
     constexpr double kTolerance = 1e-9;  // s
     constexpr std::size_t kMaxPieces = 10'000'000;
     const double passed = time - way.time;
-    if (passed < kWayStep - kTolerance) return;
+    if (passed < kPathStep - kTolerance) return;
     const Vec2 step = place - way.place;
     const double covered = length(step);
     if (std::isfinite(passed) && covered > 0 && covered <= kFastest * passed) {
@@ -45,10 +45,10 @@ void WayCutter::add(const std::string& person, double time, Point2 place) {
     way.place = place;
 }
 
-PeopleWays WayCutter::finish() {
-    PeopleWays ways;
-    for (Way& way : ways_) {
-        for (WayPiece& piece : way.pieces) {
+PeoplePaths PathCutter::finish() {
+    PeoplePaths ways;
+    for (Path& way : ways_) {
+        for (PathPiece& piece : way.pieces) {
             piece.person = ways.people.size();
             ways.pieces.push_back(piece);
         }

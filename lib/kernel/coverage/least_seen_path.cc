@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/least_seen_way.h"
+#include "coverage/least_seen_path.h"
 
 #include <algorithm>
 #include <span>
@@ -36,9 +36,9 @@ Polygon thickened(const Segment2& sheet, double half) {
 }
 
 /// The free floor of an overlay, and the parts of it that hide an intruder.
-class WayFloor {
+class PathFloor {
   public:
-    WayFloor(const Scene& scene, const Coverage& coverage, const WayChoice& of, int times)
+    PathFloor(const Scene& scene, const Coverage& coverage, const PathChoice& of, int times)
         : overlay_(layersOf(scene, coverage, of)),
           free_(overlay_.regions([](const LayerLabel& label) { return isFree(label); })),
           hidden_(overlay_.regions([times](const LayerLabel& label) {
@@ -50,14 +50,14 @@ class WayFloor {
         to_ = insideOf(kToMark, of.to);
     }
 
-    void find(LeastSeenWay& way) const {
+    void find(LeastSeenPath& way) const {
         const std::vector<std::optional<Point2>> starts = byRegion(from_), goals = byRegion(to_);
         const auto has = [](const std::vector<std::optional<Point2>>& points) {
             std::vector<bool> any;
             for (const auto& point : points) any.push_back(point.has_value());
             return any;
         };
-        const auto found = leastExposedWay(sight_, hidden_, has(starts), has(goals));
+        const auto found = leastExposedPath(sight_, hidden_, has(starts), has(goals));
         way.exists = found.has_value();
         if (!found) return;
         way.seen = found->exposed;
@@ -70,7 +70,7 @@ class WayFloor {
             region = leg.reaches;
         }
         addHidden(found->last, at, *goals[found->last], way);
-        for (const LeastSeenWay::Piece& piece : way.pieces)
+        for (const LeastSeenPath::Piece& piece : way.pieces)
             way.length += distance(piece.from, piece.to);
     }
 
@@ -80,7 +80,7 @@ class WayFloor {
     }
 
     static std::vector<Layer> layersOf(const Scene& scene, const Coverage& coverage,
-                                       const WayChoice& of) {
+                                       const PathChoice& of) {
         const Environment& environment = scene.environment;
         std::vector<Layer> layers;
         for (const CoveredSet& set : coverage.sets) layers.push_back({.curves = *set.region});
@@ -120,9 +120,9 @@ class WayFloor {
     }
 
     /// Adds the shortest way within a hidden region.
-    void addHidden(std::size_t region, Point2 from, Point2 to, LeastSeenWay& way) const {
+    void addHidden(std::size_t region, Point2 from, Point2 to, LeastSeenPath& way) const {
         const FloorSight inside(std::span(&hidden_[region], 1), sight_.tolerance());
-        const std::vector<Point2> points = inside.shortestWay(from, to);
+        const std::vector<Point2> points = inside.shortestPath(from, to);
         for (std::size_t i = 1; i < points.size(); ++i)
             if (!(points[i - 1] == points[i]))
                 way.pieces.push_back({points[i - 1], points[i], false});
@@ -136,7 +136,7 @@ class WayFloor {
 
 }  // namespace
 
-WayChoice parseWay(std::string_view text) {
+PathChoice parseWay(std::string_view text) {
     const auto comma = text.find(',');
     if (comma == std::string_view::npos || comma == 0 || comma + 1 == text.size() ||
         text.find(',', comma + 1) != std::string_view::npos)
@@ -144,14 +144,14 @@ WayChoice parseWay(std::string_view text) {
     return {std::string(text.substr(0, comma)), std::string(text.substr(comma + 1))};
 }
 
-LeastSeenWay findLeastSeenWay(const Scene& scene, const Coverage& coverage, const WayChoice& of,
-                              int times) {
-    LeastSeenWay way{of};
+LeastSeenPath findLeastSeenPath(const Scene& scene, const Coverage& coverage, const PathChoice& of,
+                                int times) {
+    LeastSeenPath way{of};
     for (const std::string* zone : {&of.from, &of.to})
         static_cast<void>(readZone(*zone, scene.environment));
     const auto is_known = [](const CoveredSet& set) { return set.region.has_value(); };
     if (!std::all_of(coverage.sets.begin(), coverage.sets.end(), is_known)) return way;
-    WayFloor(scene, coverage, of, times).find(way);
+    PathFloor(scene, coverage, of, times).find(way);
     return way;
 }
 

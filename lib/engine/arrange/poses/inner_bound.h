@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 
 namespace ispace::poses {
 
@@ -13,7 +13,7 @@ namespace ispace::poses {
 /// from all of the rectangle through the same portals of the triangulation, within range of all its
 /// corners and in the field of view at all headings. Empty: none, or the rectangle meets more than
 /// a few triangles.
-std::vector<std::uint8_t> coreViewOf(const PoseFloor& floor, const Sector& sector,
-                                     const PoseBox& box);
+std::vector<std::uint8_t> innerBoundOf(const PoseFloor& floor, const Sector& sector,
+                                       const PoseBox& box);
 
 }  // namespace ispace::poses

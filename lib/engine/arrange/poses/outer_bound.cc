@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/poses/fat_view.h"
+#include "arrange/poses/outer_bound.h"
 
 #include <algorithm>
 #include <cmath>
@@ -279,8 +279,8 @@ std::optional<double> WeakView::compute() {
 
 }  // namespace
 
-FatView fatViewOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box) {
-    FatView view;
+OuterBound outerBoundOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box) {
+    OuterBound view;
     PoseFloor::Tally tally(floor);
     const std::optional<double> area = WeakView(floor, sector, box, &tally).compute();
     if (!area) return view;

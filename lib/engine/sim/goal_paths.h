@@ -12,24 +12,24 @@
 #include "geom/point.h"
 #include "scene/scene.h"
 #include "sim/collision.h"
-#include "sim/way_finder.h"
+#include "sim/path_finder.h"
 
 namespace ispace {
 
 /// Finds short ways of a person to zones and elements of a room. It prefers ways with room to spare
 /// at both sides.
-class GoalWays {
+class GoalPaths {
   public:
     /// \param radius,height of the person
-    GoalWays(const Scene& scene, double radius, double height)
-        : GoalWays(scene, scene.environment, radius, height) {}
+    GoalPaths(const Scene& scene, double radius, double height)
+        : GoalPaths(scene, scene.environment, radius, height) {}
     /// \param environment for ways, instead of the scene's: of the same records, but for doors that
     /// are open. isAt() looks at the scene.
-    GoalWays(const Scene& scene, Environment environment, double radius, double height);
-    GoalWays(const GoalWays&) = delete;
-    GoalWays& operator=(const GoalWays&) = delete;
+    GoalPaths(const Scene& scene, Environment environment, double radius, double height);
+    GoalPaths(const GoalPaths&) = delete;
+    GoalPaths& operator=(const GoalPaths&) = delete;
 
-    using Spot = WayFinder::Spot;
+    using Spot = PathFinder::Spot;
     /// Returns the points of a way to the zone or element `id`, without the start: to the free
     /// point of a zone that is nearest to the middle of its limits; to the free point beside an
     /// element, see isAt(), that is nearest to its middle. Points that are too near to others are
@@ -52,9 +52,9 @@ class GoalWays {
     double radius_;
     Environment environment_;
     Obstacles obstacles_;
-    Obstacles walls_;                                 // with doors and windows
-    std::vector<Element> things_;                     // of extensions
-    mutable std::optional<WayFinder> wide_, narrow_;  // once a way is wanted
+    Obstacles walls_;                                  // with doors and windows
+    std::vector<Element> things_;                      // of extensions
+    mutable std::optional<PathFinder> wide_, narrow_;  // once a way is wanted
 };
 
 /// Returns the ids of the zones, elements and things of extensions to which people may go.

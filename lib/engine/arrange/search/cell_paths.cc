@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/search/cell_ways.h"
+#include "arrange/search/cell_paths.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,27 +20,27 @@ constexpr std::uint16_t kPassage = 32;
 }  // namespace
 
 /// The last step to each cell of a search, which ends at the goal.
-struct CellWays::Tree {
+struct CellPaths::Tree {
     std::vector<std::uint16_t> steps;
     std::vector<std::uint32_t> entries;  ///< of passages: the cell from which each was entered
     std::uint64_t cost = kNoCost;        ///< the seen length above, all of it in the lower 32 bits
     std::uint32_t goal = 0;
 };
 
-const CellFloor& CellWays::floorOf(std::uint32_t cell) const {
+const CellFloor& CellPaths::floorOf(std::uint32_t cell) const {
     std::size_t i = floors.size() - 1;
     while (cell < floors[i].first) --i;
     return floors[i];
 }
 
-CellSet CellWays::free() const {
+CellSet CellPaths::free() const {
     CellSet all = from;
     all |= to;
     for (const CellSet& passage : passages) all |= passage;
     return all;
 }
 
-CellWays::Tree CellWays::search(const std::function<bool(std::uint32_t)>& is_seen) const {
+CellPaths::Tree CellPaths::search(const std::function<bool(std::uint32_t)>& is_seen) const {
     Tree tree;
     tree.steps.assign(open.size(), kNoStep);
     tree.entries.assign(passages.size(), 0);
@@ -72,7 +72,7 @@ CellWays::Tree CellWays::search(const std::function<bool(std::uint32_t)>& is_see
             const auto k = static_cast<std::size_t>(std::countr_zero(bits));
             const CellStep& step = floor.steps[k];
             std::uint64_t sum = cost + step.length;
-            for (const WayCell& piece : step.pieces)
+            for (const PathCell& piece : step.pieces)
                 if (counts[cell + piece.cell]) sum += std::uint64_t{piece.length} << 32U;
             reach(cell + static_cast<std::uint32_t>(step.to), sum, static_cast<std::uint16_t>(k));
         }
@@ -90,13 +90,13 @@ CellWays::Tree CellWays::search(const std::function<bool(std::uint32_t)>& is_see
     return tree;
 }
 
-bool CellWays::exist() const {
+bool CellPaths::exist() const {
     return search([](std::uint32_t) { return false; }).cost != kNoCost;
 }
 
-CellWay CellWays::leastSeen(const std::function<bool(std::uint32_t)>& is_seen) const {
+CellPath CellPaths::leastSeen(const std::function<bool(std::uint32_t)>& is_seen) const {
     const Tree tree = search(is_seen);
-    CellWay way{tree.cost >> 32U, tree.cost & 0xffffffffU, {}};
+    CellPath way{tree.cost >> 32U, tree.cost & 0xffffffffU, {}};
     std::map<std::uint32_t, std::uint32_t> lengths;
     const CellSet uncounted = free();
     for (std::uint32_t cell = tree.goal; tree.steps[cell] != kNoStep;) {
@@ -107,7 +107,7 @@ CellWay CellWays::leastSeen(const std::function<bool(std::uint32_t)>& is_seen) c
         // Steps do not leave a floor.
         const CellStep& step = floorOf(cell).steps[tree.steps[cell]];
         cell -= static_cast<std::uint32_t>(step.to);
-        for (const WayCell& piece : step.pieces) {
+        for (const PathCell& piece : step.pieces) {
             const std::uint32_t at = cell + piece.cell;
             if (!uncounted.test(at)) lengths[at] += piece.length;
         }

@@ -14,8 +14,8 @@
 namespace ispace {
 
 /// A piece of a person's way.
-struct WayPiece {
-    std::size_t person = 0;  ///< index in PeopleWays::people
+struct PathPiece {
+    std::size_t person = 0;  ///< index in PeoplePaths::people
     double time = 0;         ///< seconds, at its beginning
     Point2 place;            ///< its beginning
     Vec2 velocity;           ///< m/s, mean
@@ -23,36 +23,36 @@ struct WayPiece {
 };
 
 /// Duration of a piece, seconds; longer if the moments of a run are farther apart.
-constexpr double kWayStep = 0.2;
+constexpr double kPathStep = 0.2;
 
 /// The ways of people through a room.
-struct PeopleWays {
+struct PeoplePaths {
     std::vector<std::string> people;  ///< ids
     /// By person, then by time. People at rest have no piece.
-    std::vector<WayPiece> pieces;
+    std::vector<PathPiece> pieces;
 
     /// Returns the index of the first piece of each person, then the number of pieces.
     [[nodiscard]] std::vector<std::size_t> firsts() const;
 };
 
 /// Cuts ways into pieces.
-class WayCutter {
+class PathCutter {
   public:
-    /// Adds a position of a person, whose times ascend. Ignores those less than kWayStep after the
+    /// Adds a position of a person, whose times ascend. Ignores those less than kPathStep after the
     /// last one used. Between two that are farther apart than a person runs, a client moved the
     /// person: that is no piece. \throws UsageError for more than 10 million pieces
     void add(const std::string& person, double time, Point2 place);
     /// Returns the ways so far; the cutter is then empty.
-    [[nodiscard]] PeopleWays finish();
+    [[nodiscard]] PeoplePaths finish();
 
   private:
-    struct Way {
+    struct Path {
         std::string id;
         double time = -std::numeric_limits<double>::infinity();
         Point2 place;
-        std::vector<WayPiece> pieces = {};
+        std::vector<PathPiece> pieces = {};
     };
-    std::vector<Way> ways_;
+    std::vector<Path> ways_;
     std::size_t last_ = 0;    // of ways_
     std::size_t pieces_ = 0;  // of all ways
 };

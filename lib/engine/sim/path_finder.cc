@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/way_finder.h"
+#include "sim/path_finder.h"
 
 #include <tbb/parallel_for.h>
 #include <algorithm>
@@ -21,17 +21,17 @@ constexpr std::int32_t kSide = 12, kCorner = 17;
 constexpr double kNear = 0.5, kThin = 0.01;
 
 Grid gridOver(const Box2& box) {
-    const double width = std::max(box.width(), WayFinder::kCell);
-    const double depth = std::max(box.depth(), WayFinder::kCell);
-    const double size = std::max(WayFinder::kCell, std::sqrt(width * depth / kMaxCells));
+    const double width = std::max(box.width(), PathFinder::kCell);
+    const double depth = std::max(box.depth(), PathFinder::kCell);
+    const double size = std::max(PathFinder::kCell, std::sqrt(width * depth / kMaxCells));
     return gridOf(box.low, size, static_cast<int>(std::ceil(width / size)),
                   static_cast<int>(std::ceil(depth / size)));
 }
 
 }  // namespace
 
-WayFinder::WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
-                     const std::vector<Polygon>& holes)
+PathFinder::PathFinder(const Obstacles& obstacles, const Box2& box, double radius,
+                       const std::vector<Polygon>& holes)
     : obstacles_(&obstacles),
       reach_(radius + kMargin),
       grid_(gridOver(box)),
@@ -51,7 +51,7 @@ WayFinder::WayFinder(const Obstacles& obstacles, const Box2& box, double radius,
 /// Calls visit(cell, cost) for the free neighbours of a cell; a corner is passed only between free
 /// sides.
 template <typename Visit>
-void WayFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
+void PathFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
     const std::size_t east = cell + 1, west = cell - 1;
     const std::size_t north = cell + stride_, south = cell - stride_;
     const bool to_east = free_[east] != 0, to_west = free_[west] != 0;
@@ -66,8 +66,8 @@ void WayFinder::forEachNeighbour(std::size_t cell, Visit visit) const {
     if (to_south && to_east && free_[south + 1] != 0) visit(south + 1, kCorner);
 }
 
-WayFinder WayFinder::around(std::span<const Spot> spots) const {
-    WayFinder finder = *this;
+PathFinder PathFinder::around(std::span<const Spot> spots) const {
+    PathFinder finder = *this;
     finder.spots_.assign(spots.begin(), spots.end());
     // Hundreds of people each plan around all others.
     std::vector<double> x, y;
@@ -100,7 +100,7 @@ WayFinder WayFinder::around(std::span<const Spot> spots) const {
 
 /// Calls visit(cell) for each cell whose centre is in the box, and possibly for others, by rows.
 template <typename Visit>
-void WayFinder::forEachCellIn(const Box2& box, Visit visit) const {
+void PathFinder::forEachCellIn(const Box2& box, Visit visit) const {
     if (box.empty()) return;
     const auto within = [](double at, int count) {
         return static_cast<int>(std::clamp(at, -1.0, static_cast<double>(count)));
@@ -116,7 +116,7 @@ void WayFinder::forEachCellIn(const Box2& box, Visit visit) const {
 
 /// Returns the cell of those that pass the test whose centre is nearest to a point.
 template <typename Test>
-std::optional<std::size_t> WayFinder::nearestCell(Point2 to, const Box2& box, Test test) const {
+std::optional<std::size_t> PathFinder::nearestCell(Point2 to, const Box2& box, Test test) const {
     std::optional<std::size_t> best;
     double least = std::numeric_limits<double>::infinity();
     forEachCellIn(box, [&](std::size_t cell) {
@@ -128,24 +128,24 @@ std::optional<std::size_t> WayFinder::nearestCell(Point2 to, const Box2& box, Te
     return best;
 }
 
-bool WayFinder::isInSpot(const Segment2& way) const {
+bool PathFinder::isInSpot(const Segment2& way) const {
     return std::any_of(spots_.begin(), spots_.end(), [&](const Spot& spot) {
         const double apart = reach_ + spot.radius;
         return squaredDistance(spot.center, way) < apart * apart;
     });
 }
 
-bool WayFinder::isFree(Point2 p) const {
+bool PathFinder::isFree(Point2 p) const {
     return !isInSpot({p, p}) && !isOverHole({p, p}) && !obstacles_->overlap(p, reach_);
 }
 
-bool WayFinder::isStraight(Point2 from, Point2 to) const {
+bool PathFinder::isStraight(Point2 from, Point2 to) const {
     return !isInSpot({from, to}) && !isOverHole({from, to}) &&
            !obstacles_->near({from, to}, reach_);
 }
 
 /// Returns true if the circle with the margin is over a hole somewhere on the way.
-bool WayFinder::isOverHole(const Segment2& way) const {
+bool PathFinder::isOverHole(const Segment2& way) const {
     // Piece by piece, as the box about a long way holds edges far from it.
     constexpr double kMaxPieces = 1000, kRounding = 1.01;
     const Vec2 along = way.b - way.a;
@@ -165,7 +165,7 @@ bool WayFinder::isOverHole(const Segment2& way) const {
     });
 }
 
-std::optional<std::size_t> WayFinder::cellNear(Point2 p) const {
+std::optional<std::size_t> PathFinder::cellNear(Point2 p) const {
     const double size = grid_.limits.width() / grid_.columns;
     const Point2 at = grid_.toCells(p);
     const auto reach = static_cast<int>(std::ceil(kNear / size));
@@ -188,13 +188,13 @@ std::optional<std::size_t> WayFinder::cellNear(Point2 p) const {
     return best;
 }
 
-Point2 WayFinder::centerOf(std::size_t cell) const {
+Point2 PathFinder::centerOf(std::size_t cell) const {
     return {grid_.columnCenter(static_cast<int>(cell % stride_) - 1),
             grid_.rowCenter(static_cast<int>(cell / stride_) - 1)};
 }
 
 /// Returns the least cost between two cells if all are free.
-std::int32_t WayFinder::leastCost(std::size_t a, std::size_t b) const {
+std::int32_t PathFinder::leastCost(std::size_t a, std::size_t b) const {
     const auto apart = [](std::size_t i, std::size_t k) {
         return static_cast<std::int32_t>(i > k ? i - k : k - i);
     };
@@ -203,12 +203,13 @@ std::int32_t WayFinder::leastCost(std::size_t a, std::size_t b) const {
     return kSide * std::max(columns, rows) + (kCorner - kSide) * std::min(columns, rows);
 }
 
-WayFinder::Field WayFinder::waysFrom(Point2 from) const {
+PathFinder::Field PathFinder::waysFrom(Point2 from) const {
     return search(from, std::nullopt, false);
 }
 
-WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal, bool aims) const {
-    Field field{from, std::vector<std::int32_t>(free_.size(), kNoWay), 0};
+PathFinder::Field PathFinder::search(Point2 from, std::optional<std::size_t> goal,
+                                     bool aims) const {
+    Field field{from, std::vector<std::int32_t>(free_.size(), kNoPath), 0};
     const auto start = cellNear(from);
     if (!start) return field;
     // Dial's algorithm, with A*'s estimate: a step adds at most two corners to cost and estimate.
@@ -234,7 +235,7 @@ WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal,
             ++field.expanded;
             forEachNeighbour(entry.cell, [&](std::size_t to, std::int32_t step) {
                 std::int32_t& known = field.cost[to];
-                if (known != kNoWay && known <= entry.cost + step) return;
+                if (known != kNoPath && known <= entry.cost + step) return;
                 known = entry.cost + step;
                 bucket(known + estimate(to)).push_back({to, known});
                 ++waiting;
@@ -246,47 +247,47 @@ WayFinder::Field WayFinder::search(Point2 from, std::optional<std::size_t> goal,
     return field;
 }
 
-std::vector<Point2> WayFinder::wayBetween(Point2 from, Point2 to) const {
+std::vector<Point2> PathFinder::wayBetween(Point2 from, Point2 to) const {
     const auto goal = cellNear(to);
     return goal ? way(search(from, goal, true), to) : std::vector<Point2>();
 }
 
-std::optional<double> WayFinder::length(const Field& field, Point2 to) const {
+std::optional<double> PathFinder::length(const Field& field, Point2 to) const {
     const auto cell = cellNear(to);
-    if (!cell || field.cost[*cell] == kNoWay) return std::nullopt;
+    if (!cell || field.cost[*cell] == kNoPath) return std::nullopt;
     return field.cost[*cell] * (grid_.limits.width() / grid_.columns) / kSide;
 }
 
-WayFinder::Approach WayFinder::approach(Point2 from, Point2 to, const Box2& box,
-                                        const std::function<bool(Point2)>& is_suitable) const {
+PathFinder::Approach PathFinder::approach(Point2 from, Point2 to, const Box2& box,
+                                          const std::function<bool(Point2)>& is_suitable) const {
     auto goal = nearestCell(
         to, box, [&](std::size_t i) { return free_[i] != 0 && is_suitable(centerOf(i)); });
     if (!goal) return {};
     Approach found{search(from, goal, false), std::nullopt};
     // No way leads there: all cells with a way are known.
-    if (found.field.cost[*goal] == kNoWay)
+    if (found.field.cost[*goal] == kNoPath)
         goal = nearestCell(to, box, [&](std::size_t i) {
-            return found.field.cost[i] != kNoWay && is_suitable(centerOf(i));
+            return found.field.cost[i] != kNoPath && is_suitable(centerOf(i));
         });
     if (goal) found.goal = centerOf(*goal);
     return found;
 }
 
-std::optional<Point2> WayFinder::farthestReached(const Field& field) const {
+std::optional<Point2> PathFinder::farthestReached(const Field& field) const {
     const auto most = std::max_element(field.cost.begin(), field.cost.end());
-    if (most == field.cost.end() || *most == kNoWay) return std::nullopt;
+    if (most == field.cost.end() || *most == kNoPath) return std::nullopt;
     return centerOf(static_cast<std::size_t>(most - field.cost.begin()));
 }
 
-std::vector<Point2> WayFinder::way(const Field& field, Point2 to) const {
+std::vector<Point2> PathFinder::way(const Field& field, Point2 to) const {
     const auto end = cellNear(to);
-    if (!end || field.cost[*end] == kNoWay) return {};
+    if (!end || field.cost[*end] == kNoPath) return {};
     std::vector<Point2> points = {to};
     for (std::size_t cell = *end; field.cost[cell] > 0;) {
         points.push_back(centerOf(cell));
         std::size_t before = cell;
         forEachNeighbour(cell, [&](std::size_t other, std::int32_t step) {
-            if (before == cell && field.cost[other] != kNoWay &&
+            if (before == cell && field.cost[other] != kNoPath &&
                 field.cost[other] + step == field.cost[cell])
                 before = other;
         });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/way_finder.h"
+#include "sim/path_finder.h"
 
 #include <gtest/gtest.h>
 
@@ -39,9 +39,9 @@ double lengthOf(Point2 from, const std::vector<Point2>& way) {
     return sum;
 }
 
-TEST(WayFinder, GoesThroughTheDoor) {
+TEST(PathFinder, GoesThroughTheDoor) {
     const Floor floor(kRooms);
-    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    const PathFinder finder(floor.obstacles, floor.box, 0.3);
     const auto field = finder.waysFrom({1, 1});
     const std::vector<Point2> way = finder.way(field, {7, 1});
     ASSERT_FALSE(way.empty());
@@ -58,14 +58,14 @@ TEST(WayFinder, GoesThroughTheDoor) {
     EXPECT_LT(lengthOf({1, 1}, way), *finder.length(field, {7, 1}) + 0.1);
 }
 
-TEST(WayFinder, GoesAroundAHoleAsAroundAFence) {
+TEST(PathFinder, GoesAroundAHoleAsAroundAFence) {
     const std::string room = "fence id=f path=0,0;8,0;8,4;0,4 closed=yes\n";
     const Floor open((room + "inside at=1,1\n").c_str());
     const Floor fenced(
         (room + "fence id=h path=3,1;5,1;4.5,3;3,2.5 closed=yes\ninside at=1,1\n").c_str());
     const Polygon hole = {{3, 1}, {5, 1}, {4.5, 3}, {3, 2.5}};
-    const WayFinder finder(open.obstacles, open.box, 0.3, {hole});
-    const WayFinder oracle(fenced.obstacles, fenced.box, 0.3);
+    const PathFinder finder(open.obstacles, open.box, 0.3, {hole});
+    const PathFinder oracle(fenced.obstacles, fenced.box, 0.3);
     const auto field = finder.waysFrom({1, 2});
     for (const Point2 to : {Point2{7, 2}, Point2{7, 0.5}, Point2{4, 3.5}, Point2{5.4, 2}})
         EXPECT_EQ(finder.way(field, to), oracle.way(oracle.waysFrom({1, 2}), to)) << to.x;
@@ -74,9 +74,9 @@ TEST(WayFinder, GoesAroundAHoleAsAroundAFence) {
     EXPECT_TRUE(finder.isStraight({1, 0.5}, {7, 0.5}));
 }
 
-TEST(WayFinder, KeepsFromAHoleOfManyCornersByThePlainFormula) {
+TEST(PathFinder, KeepsFromAHoleOfManyCornersByThePlainFormula) {
     const Floor floor("fence id=f path=0,0;20,0;20,20;0,20 closed=yes\ninside at=1,1\n");
-    constexpr double kRadius = 0.3, kReach = kRadius + WayFinder::kMargin;
+    constexpr double kRadius = 0.3, kReach = kRadius + PathFinder::kMargin;
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> any(0, 1);
     for (const int corners : {3, 40, 3000}) {
@@ -86,7 +86,7 @@ TEST(WayFinder, KeepsFromAHoleOfManyCornersByThePlainFormula) {
             star.push_back(Point2{10, 9} + (2 + 5 * any(random)) * Vec2{cos(angle), sin(angle)});
         }
         const Polygon pit = {{1, 18}, {3, 18}, {3, 19}, {1, 19}};
-        const WayFinder finder(floor.obstacles, floor.box, kRadius, {star, pit});
+        const PathFinder finder(floor.obstacles, floor.box, kRadius, {star, pit});
         const auto keeps_off = [&](const Polygon& hole, const Segment2& way) {
             bool is_off = locate(hole, way.a) != Side::Inside;
             forEachEdge(hole, [&](const Segment2& edge) {
@@ -112,27 +112,27 @@ TEST(WayFinder, KeepsFromAHoleOfManyCornersByThePlainFormula) {
     }
 }
 
-TEST(WayFinder, FindsNoneOverAHoleAcrossTheRoom) {
+TEST(PathFinder, FindsNoneOverAHoleAcrossTheRoom) {
     const Floor floor("fence id=f path=0,0;8,0;8,4;0,4 closed=yes\ninside at=1,1\n");
     for (const double end : {4.0, 3.2}) {  // 0.7 m are needed beside it
         const Polygon hole = {{3, 0}, {5, 0}, {5, end}, {3, end}};
-        const WayFinder finder(floor.obstacles, floor.box, 0.3, {hole});
+        const PathFinder finder(floor.obstacles, floor.box, 0.3, {hole});
         EXPECT_EQ(finder.wayBetween({1, 1}, {7, 1}).empty(), end == 4.0);
     }
 }
 
-TEST(WayFinder, FindsNoneThroughADoorThatIsTooNarrow) {
+TEST(PathFinder, FindsNoneThroughADoorThatIsTooNarrow) {
     const Floor floor(kRooms);
-    const WayFinder finder(floor.obstacles, floor.box, 0.45);
+    const PathFinder finder(floor.obstacles, floor.box, 0.45);
     const auto field = finder.waysFrom({1, 1});
     EXPECT_FALSE(finder.length(field, {7, 1}));
     EXPECT_TRUE(finder.way(field, {7, 1}).empty());
     EXPECT_TRUE(finder.length(field, {1, 3}));
 }
 
-TEST(WayFinder, FindsTheSameWayTowardsAGoal) {
+TEST(PathFinder, FindsTheSameWayTowardsAGoal) {
     const Floor floor(kRooms);
-    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    const PathFinder finder(floor.obstacles, floor.box, 0.3);
     for (const Point2 from : {Point2{1, 1}, Point2{3.5, 3.5}, Point2{0.4, 2}})
         for (const Point2 to : {Point2{7, 1}, Point2{5, 3.6}, Point2{1, 3}}) {
             const double all = lengthOf(from, finder.way(finder.waysFrom(from), to));
@@ -141,15 +141,15 @@ TEST(WayFinder, FindsTheSameWayTowardsAGoal) {
     EXPECT_TRUE(finder.wayBetween({1, 1}, {40, 1}).empty());
 }
 
-TEST(WayFinder, IsStraightInTheOpen) {
+TEST(PathFinder, IsStraightInTheOpen) {
     const Floor floor(kRooms);
-    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    const PathFinder finder(floor.obstacles, floor.box, 0.3);
     EXPECT_EQ(finder.way(finder.waysFrom({1, 1}), {3, 2.2}), (std::vector<Point2>{{3, 2.2}}));
 }
 
-TEST(WayFinder, KnowsNoWayFromWithinWallsOrBeyondTheGrid) {
+TEST(PathFinder, KnowsNoWayFromWithinWallsOrBeyondTheGrid) {
     const Floor floor(kRooms);
-    const WayFinder finder(floor.obstacles, floor.box, 0.3);
+    const PathFinder finder(floor.obstacles, floor.box, 0.3);
     EXPECT_TRUE(finder.way(finder.waysFrom({1e9, 0}), {1, 1}).empty());
     EXPECT_TRUE(finder.way(finder.waysFrom({1, 1}), {-1e300, 1e300}).empty());
     EXPECT_TRUE(finder.way(finder.waysFrom({1, 1}), {40, 1}).empty());
@@ -158,21 +158,21 @@ TEST(WayFinder, KnowsNoWayFromWithinWallsOrBeyondTheGrid) {
 }
 
 /// A search that stops at its goal finds the ways of one that visits all cells, also round others.
-TEST(WayFinder, ApproachesTheNearestSuitablePoint) {
+TEST(PathFinder, ApproachesTheNearestSuitablePoint) {
     const Floor floor(kRooms);
-    const WayFinder open(floor.obstacles, floor.box, 0.3);
+    const PathFinder open(floor.obstacles, floor.box, 0.3);
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> across(0.2, 7.8), along(0.2, 3.8);
     std::size_t reached = 0, saved = 0;
     for (int i = 0; i < 100; ++i) {
-        std::vector<WayFinder::Spot> spots;
+        std::vector<PathFinder::Spot> spots;
         for (int k = 0; k < i % 12; ++k) spots.push_back({{across(random), along(random)}, 0.25});
-        const WayFinder finder = open.around(spots);
+        const PathFinder finder = open.around(spots);
         const Point2 from{across(random), along(random)}, to{across(random), along(random)};
         const Box2 box{to - Vec2{0.5, 0.5}, to + Vec2{0.5, 0.5}};
         const auto is_suitable = [&](Point2 p) { return distance(p, to) < 0.5; };
-        const WayFinder::Approach found = finder.approach(from, to, box, is_suitable);
-        const WayFinder::Field all = finder.waysFrom(from);
+        const PathFinder::Approach found = finder.approach(from, to, box, is_suitable);
+        const PathFinder::Field all = finder.waysFrom(from);
         std::optional<Point2> best;
         for (int row = 0; row < 40; ++row)
             for (int column = 0; column < 80; ++column) {
@@ -181,7 +181,7 @@ TEST(WayFinder, ApproachesTheNearestSuitablePoint) {
                 if (!best || distance(p, to) < distance(*best, to) - 1e-9) best = p;
             }
         ASSERT_EQ(found.goal.has_value(), best.has_value()) << i;
-        for (const WayFinder::Spot& spot : spots)
+        for (const PathFinder::Spot& spot : spots)
             EXPECT_FALSE(finder.isFree(spot.center + Vec2{0.3, 0})) << i;
         if (!best) continue;
         EXPECT_NEAR(distance(*found.goal, to), distance(*best, to), 1e-6) << i;

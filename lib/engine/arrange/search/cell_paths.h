@@ -12,21 +12,21 @@
 namespace ispace {
 
 /// Length of a way in a cell.
-struct WayCell {
+struct PathCell {
     std::uint32_t cell = 0, length = 0;
 };
 
 /// A step from any cell to another one.
 struct CellStep {
-    std::int32_t to = 0;               ///< index of its end, less that of its begin
-    std::uint32_t length = 0;          ///< of all pieces
-    std::vector<WayCell> pieces = {};  ///< `cell` less that of its begin, modulo 2^32
+    std::int32_t to = 0;                ///< index of its end, less that of its begin
+    std::uint32_t length = 0;           ///< of all pieces
+    std::vector<PathCell> pieces = {};  ///< `cell` less that of its begin, modulo 2^32
 };
 
 /// A way, and the cells in which it counts.
-struct CellWay {
+struct CellPath {
     std::uint64_t seen = 0, length = 0;
-    std::vector<WayCell> cells;  ///< ascending; without those of the zones
+    std::vector<PathCell> cells;  ///< ascending; without those of the zones
 };
 
 /// The cells of a floor, from `first` to those of the next one, and the steps between them.
@@ -36,7 +36,7 @@ struct CellFloor {
 };
 
 /// The ways between two zones over the cells of floors, with lengths in whole units.
-struct CellWays {
+struct CellPaths {
     std::vector<CellFloor> floors;
     std::vector<std::uint32_t> open;  ///< by cell: bit k if step k of its floor may be taken
     CellSet from, to;
@@ -47,7 +47,7 @@ struct CellWays {
     /// Cells of the zones and of passages do not count, and passages have no length. Dijkstra;
     /// O(cells log cells + passages * cells)
     /// \pre there is a way, and its length is below 2^32
-    [[nodiscard]] CellWay leastSeen(const std::function<bool(std::uint32_t)>& is_seen) const;
+    [[nodiscard]] CellPath leastSeen(const std::function<bool(std::uint32_t)>& is_seen) const;
     /// Returns true if there is a way.
     [[nodiscard]] bool exist() const;
 

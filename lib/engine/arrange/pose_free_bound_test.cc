@@ -26,7 +26,7 @@ std::size_t cellsSeenFrom(Point2 place, double heading, const Laser& laser, cons
     Scene scene = hall();
     scene.sensors.push_back(
         {"l", laser, {{place.x, place.y, kScanHeight}, Angle::degrees(heading), {}, {}}});
-    Worlds worlds(scene.environment);
+    RayScenes worlds(scene.environment);
     const CoverageOptions options{.cells = CellCount{grid.columns, grid.rows}, .exact = false};
     return measureCoverage(scene, worlds, options).sensors[0].cells.count();
 }
@@ -90,7 +90,7 @@ class PoseSource {
 template <typename PlacedRecord, typename Model>
 double fullestView(const Model& model, double max_height, unsigned seed) {
     static const Scene kHall = hall();
-    static Worlds worlds(kHall.environment);
+    static RayScenes worlds(kHall.environment);
     static const VisibleArea sight(kHall.environment, kPlane, &worlds);
     const Grid grid{kHall.environment.limits(), 80, 90};
     const auto most = static_cast<double>(maxCellsInView(model, grid));

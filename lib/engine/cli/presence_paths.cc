@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/presence_ways.h"
+#include "cli/presence_paths.h"
 
 #include <chrono>
 #include <optional>
@@ -48,7 +48,7 @@ std::vector<Record> recordsWith(const Crowd& crowd, const Scene& scene) {
     return records;
 }
 
-void visitWanderers(const WaysChoice& choice, const Scene& scene, std::uint64_t seed,
+void visitWanderers(const PathsChoice& choice, const Scene& scene, std::uint64_t seed,
                     const PersonVisit& visit) {
     constexpr SimTime kStep = std::chrono::milliseconds(20);
     const Crowd crowd =
@@ -73,13 +73,13 @@ void visitWanderers(const WaysChoice& choice, const Scene& scene, std::uint64_t 
 
 }  // namespace
 
-WaysChoice parseWays(const std::string& text) {
+PathsChoice parseWays(const std::string& text) {
     constexpr std::int64_t kMaxPeople = 1000;
     constexpr SimTime kMaxDuration = std::chrono::hours(24);
     if (!text.starts_with(kWander)) return {.record = text};
     const std::string words = text.substr(kWander.size());
     const auto comma = words.find(',');
-    WaysChoice choice;
+    PathsChoice choice;
     const auto people = parseInteger(words.substr(0, comma));
     std::optional<SimTime> duration = choice.duration;
     if (comma != std::string::npos) duration = parseSimTime(words.substr(comma + 1));
@@ -92,26 +92,26 @@ WaysChoice parseWays(const std::string& text) {
     return choice;
 }
 
-void visitWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed,
-               const PersonVisit& visit) {
+void visitPaths(const PathsChoice& choice, const Scene& scene, std::uint64_t seed,
+                const PersonVisit& visit) {
     if (choice.record.empty()) return visitWanderers(choice, scene, seed, visit);
     RunReader reader(choice.record);
     visitPeople(reader, visit);
 }
 
-PeopleWays readWays(const WaysChoice& choice, const Scene& scene, std::uint64_t seed) {
-    WayCutter cutter;
-    visitWays(choice, scene, seed, [&cutter](const std::string& id, double time, Point2 place) {
+PeoplePaths readPaths(const PathsChoice& choice, const Scene& scene, std::uint64_t seed) {
+    PathCutter cutter;
+    visitPaths(choice, scene, seed, [&cutter](const std::string& id, double time, Point2 place) {
         cutter.add(id, time, place);
     });
     return cutter.finish();
 }
 
-std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const SiteScene& building,
-                                    std::span<const std::size_t> people, std::uint64_t seed) {
-    std::vector<RoomWays> rooms;
+std::vector<RoomPaths> waysOfStoreys(const PathsChoice& choice, const SiteScene& building,
+                                     std::span<const std::size_t> people, std::uint64_t seed) {
+    std::vector<RoomPaths> rooms;
     for (std::size_t i = 0; i < people.size(); ++i) {
-        RoomWays& own = rooms.emplace_back(RoomWays{choice, seedOfStorey(seed, i)});
+        RoomPaths& own = rooms.emplace_back(RoomPaths{choice, seedOfStorey(seed, i)});
         own.choice.people = static_cast<int>(people[i]);
         if (!choice.record.empty())
             own.choice.record = recordOfStorey(choice.record, building.document.storeys[i]);
@@ -119,11 +119,11 @@ std::vector<RoomWays> waysOfStoreys(const WaysChoice& choice, const SiteScene& b
     return rooms;
 }
 
-std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
-                             const WaysChoice& choice, std::uint64_t seed, double plane) {
+std::vector<RoomPaths> waysIn(const SiteInput& site, const std::string& option,
+                              const PathsChoice& choice, std::uint64_t seed, double plane) {
     if (!choice.record.empty()) mustBeRecordOf(site, option, choice.record);
     if (site.isOneRoom()) {
-        WaysChoice own = choice;
+        PathsChoice own = choice;
         own.record = recordFor(site, choice.record);
         return {{own, seed}};
     }
@@ -132,20 +132,20 @@ std::vector<RoomWays> waysIn(const SiteInput& site, const std::string& option,
         spreadOverStoreys(site.building, plane, static_cast<std::size_t>(choice.people)), seed);
 }
 
-PeopleWays readWays(const RoomWays& ways, const Scene& scene) {
-    return ways.isEmpty() ? PeopleWays() : readWays(ways.choice, scene, ways.seed);
+PeoplePaths readPaths(const RoomPaths& ways, const Scene& scene) {
+    return ways.isEmpty() ? PeoplePaths() : readPaths(ways.choice, scene, ways.seed);
 }
 
-std::vector<std::shared_ptr<const Demand>> demandsOfPresence(const WaysChoice& choice,
+std::vector<std::shared_ptr<const Demand>> demandsOfPresence(const PathsChoice& choice,
                                                              const SiteInput& site,
                                                              std::uint64_t seed, double plane,
                                                              std::vector<std::string>& files) {
     std::vector<std::shared_ptr<const Demand>> demands;
-    const std::vector<RoomWays> ways = waysIn(site, "--presence", choice, seed, plane);
+    const std::vector<RoomPaths> ways = waysIn(site, "--presence", choice, seed, plane);
     for (std::size_t i = 0; i < ways.size(); ++i) {
         if (!choice.record.empty()) files.push_back(RecordedFiles(ways[i].choice.record).robots);
         demands.push_back(presenceDemand(
-            std::make_shared<PeopleWays>(readWays(ways[i], *site.rooms()[i])), plane));
+            std::make_shared<PeoplePaths>(readPaths(ways[i], *site.rooms()[i])), plane));
     }
     return demands;
 }

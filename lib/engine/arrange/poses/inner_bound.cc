@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/poses/core_view.h"
+#include "arrange/poses/inner_bound.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,9 +22,9 @@ struct Piece {
 /// Expands the views of the parts of a rectangle in single triangles, from triangle to triangle.
 /// Beyond a portal lie those points that are to the right of the lines from all corners of the part
 /// through the portal's left end, and so mirrored.
-class CoreView {
+class InnerBound {
   public:
-    CoreView(const PoseFloor& floor, const Sector& sector, const PoseBox& box)
+    InnerBound(const PoseFloor& floor, const Sector& sector, const PoseBox& box)
         : floor_(floor), sector_(sector), box_(box) {
         box_.at = box.at.expanded(kWiden);
     }
@@ -55,7 +55,7 @@ class CoreView {
 
 constexpr int kSides = 96;
 
-bool CoreView::setField() {
+bool InnerBound::setField() {
     if (sector_.isRound()) {
         fields_.emplace_back();
         return true;
@@ -86,7 +86,7 @@ bool CoreView::setField() {
     return true;
 }
 
-void CoreView::setRange() {
+void InnerBound::setRange() {
     for (int i = 0; i < kSides; ++i) {
         HalfPlane side = behindBox(box_.at, wayAt(2 * std::numbers::pi * i / kSides));
         side.reach += sector_.range * std::cos(std::numbers::pi / kSides);
@@ -98,12 +98,12 @@ void CoreView::setRange() {
     }
 }
 
-void CoreView::addLimits(Point2 end, double side) {
+void InnerBound::addLimits(Point2 end, double side) {
     for (const Point2 s : source_)
         if (distance(s, end) > kAtCorner) limits_.push_back(besideRay(s, end - s, -side));
 }
 
-void CoreView::expandFrom(std::size_t triangle) {
+void InnerBound::expandFrom(std::size_t triangle) {
     const PoseFloor::Triangle& from = floor_.triangles()[triangle];
     const PoseFloor::Corners corners = floor_.cornersOf(triangle);
     seen_.push_back({triangle, {corners.begin(), corners.end()}});
@@ -117,7 +117,7 @@ void CoreView::expandFrom(std::size_t triangle) {
     }
 }
 
-void CoreView::expand(std::size_t triangle, std::uint32_t right, std::uint32_t left) {
+void InnerBound::expand(std::size_t triangle, std::uint32_t right, std::uint32_t left) {
     const PoseFloor::Triangle& own = floor_.triangles()[triangle];
     const PoseFloor::Corners corners = floor_.cornersOf(triangle);
     const Point2 middle = box_.at.center();
@@ -147,7 +147,7 @@ void CoreView::expand(std::size_t triangle, std::uint32_t right, std::uint32_t l
 }
 
 /// Keeps what the present part of the rectangle sees, too.
-void CoreView::intersect() {
+void InnerBound::intersect() {
     std::vector<Piece> both;
     for (const Piece& a : shared_)
         for (const Piece& b : seen_) {
@@ -163,7 +163,7 @@ void CoreView::intersect() {
     shared_.swap(both);
 }
 
-std::vector<std::uint8_t> CoreView::compute() {
+std::vector<std::uint8_t> InnerBound::compute() {
     constexpr int kMaxParts = 8;
     if (!setField()) return {};
     int parts = 0;
@@ -205,9 +205,9 @@ std::vector<std::uint8_t> CoreView::compute() {
 
 }  // namespace
 
-std::vector<std::uint8_t> coreViewOf(const PoseFloor& floor, const Sector& sector,
-                                     const PoseBox& box) {
-    return CoreView(floor, sector, box).compute();
+std::vector<std::uint8_t> innerBoundOf(const PoseFloor& floor, const Sector& sector,
+                                       const PoseBox& box) {
+    return InnerBound(floor, sector, box).compute();
 }
 
 }  // namespace ispace::poses

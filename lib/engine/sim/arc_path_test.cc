@@ -19,11 +19,11 @@ Pose2 onArc(const Pose2& from, double radius, Angle turn) {
             heading};
 }
 
-TEST(ArcWay, IsAnArcOfAnyTurn) {
+TEST(ArcPath, IsAnArcOfAnyTurn) {
     const Pose2 from{{1, 2}, Angle::degrees(30)};
     for (const double degrees : {0.5, 9.0, 45.0, 90.0, 135.0, 179.0, -1.0, -60.0, -179.0}) {
         const Angle turn = Angle::degrees(degrees);
-        const ArcWay way(from, onArc(from, 0.5, turn));
+        const ArcPath way(from, onArc(from, 0.5, turn));
         for (double share = 0; share <= 1; share += 0.125) {
             const Pose2 found = way.at(share), exact = onArc(from, 0.5, share * turn);
             EXPECT_NEAR(found.position.x, exact.position.x, 1e-14) << degrees << ' ' << share;
@@ -33,24 +33,24 @@ TEST(ArcWay, IsAnArcOfAnyTurn) {
     }
 }
 
-TEST(ArcWay, EndsExactly) {
+TEST(ArcPath, EndsExactly) {
     const Pose2 from{{0.1, 0.2}, Angle::degrees(10)}, to{{0.7, -0.3}, Angle::degrees(-55.5)};
-    EXPECT_EQ(ArcWay(from, to).at(0), from);
-    EXPECT_EQ(ArcWay(from, to).at(1), to);
+    EXPECT_EQ(ArcPath(from, to).at(0), from);
+    EXPECT_EQ(ArcPath(from, to).at(1), to);
 }
 
-TEST(ArcWay, StraightOnAndOnTheSpot) {
+TEST(ArcPath, StraightOnAndOnTheSpot) {
     const Pose2 from{{1, 2}, Angle::degrees(90)};
-    EXPECT_EQ(ArcWay(from, {{1, 3}, Angle::degrees(90)}).at(0.25),
+    EXPECT_EQ(ArcPath(from, {{1, 3}, Angle::degrees(90)}).at(0.25),
               (Pose2{{1, 2.25}, Angle::degrees(90)}));
-    EXPECT_EQ(ArcWay(from, {{1, 2}, Angle::degrees(100)}).at(0.5),
+    EXPECT_EQ(ArcPath(from, {{1, 2}, Angle::degrees(100)}).at(0.5),
               (Pose2{{1, 2}, Angle::degrees(95)}));
     // By the shorter way.
-    EXPECT_EQ(ArcWay({{}, Angle::degrees(170)}, {{}, Angle::degrees(-170)}).at(0.25).heading,
+    EXPECT_EQ(ArcPath({{}, Angle::degrees(170)}, {{}, Angle::degrees(-170)}).at(0.25).heading,
               Angle::degrees(175));
 }
 
-TEST(ArcWay, CarriesWhatIsMounted) {
+TEST(ArcPath, CarriesWhatIsMounted) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> place(-5, 5), angle(-180, 180), part(0, 1);
     for (int round = 0; round < 200; ++round) {
@@ -60,7 +60,7 @@ TEST(ArcWay, CarriesWhatIsMounted) {
         const double first = part(random), step = (part(random) - first) / 10;
         BeamFrames frames;
         frames.resize(12);
-        const ArcWay way(from, to);
+        const ArcPath way(from, to);
         way.carry(mount, first, step, 1, 11, frames);
         EXPECT_EQ(frames.x[0], 0);
         EXPECT_EQ(frames.x[11], 0);
@@ -76,11 +76,11 @@ TEST(ArcWay, CarriesWhatIsMounted) {
     }
 }
 
-TEST(ArcWay, FacesExactlyWhereItGoesStraightOn) {
+TEST(ArcPath, FacesExactlyWhereItGoesStraightOn) {
     BeamFrames frames;
     frames.resize(3);
     const Pose2 from{{1, 2}, Angle::degrees(90)};
-    ArcWay(from, {{1, 3}, Angle::degrees(90)}).carry({{0.5, 0}, {}}, 0, 0.5, 0, 3, frames);
+    ArcPath(from, {{1, 3}, Angle::degrees(90)}).carry({{0.5, 0}, {}}, 0, 0.5, 0, 3, frames);
     EXPECT_EQ(frames.cos, std::vector<double>(3, 0.0));
     EXPECT_EQ(frames.sin, std::vector<double>(3, 1.0));
     EXPECT_EQ(frames.x, std::vector<double>(3, 1.0));

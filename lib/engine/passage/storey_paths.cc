@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "passage/storey_ways.h"
+#include "passage/storey_paths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,7 @@ constexpr double kMaxSpot = 4, kSpotStep = 0.5;
 constexpr std::size_t kMaxSpots = 8;
 /// Landings of a storey to which the ways from one are kept free, the nearest: with more of them,
 /// ways to farther ones pass these.
-constexpr std::size_t kMaxWaysOut = 32;
+constexpr std::size_t kMaxPathsOut = 32;
 /// The floor before a door that waiting movers leave free, metres ahead.
 constexpr double kLeftFree = 2.5;
 
@@ -69,8 +69,8 @@ std::vector<StoreyLink> passagesOf(const SiteScene& building) {
     return passages;
 }
 
-StoreyWays::StoreyWays(const SiteScene& building, const std::vector<StoreyLink>& passages,
-                       const MoverSize& size)
+StoreyPaths::StoreyPaths(const SiteScene& building, const std::vector<StoreyLink>& passages,
+                         const MoverSize& size)
     : passages_(&passages), size_(size) {
     // Movers climb the steps in the openings of stairs.
     std::vector<std::vector<Polygon>> holes(building.scenes.size());
@@ -95,7 +95,7 @@ StoreyWays::StoreyWays(const SiteScene& building, const std::vector<StoreyLink>&
     for (Landing& landing : landings_) addSpots(landing);
 }
 
-void StoreyWays::addLift(const SiteScene& building, std::size_t index) {
+void StoreyPaths::addLift(const SiteScene& building, std::size_t index) {
     const StoreyLink& passage = (*passages_)[index];
     for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {
         const std::size_t storey = passage.storeys[stop];
@@ -118,7 +118,7 @@ void StoreyWays::addLift(const SiteScene& building, std::size_t index) {
     }
 }
 
-void StoreyWays::addStairs(const SiteScene& building, std::size_t index) {
+void StoreyPaths::addStairs(const SiteScene& building, std::size_t index) {
     const StoreyLink& passage = (*passages_)[index];
     const auto add = [&](std::size_t stop, const Pose2& end) {
         const std::size_t storey = passage.storeys[stop];
@@ -145,7 +145,7 @@ void StoreyWays::addStairs(const SiteScene& building, std::size_t index) {
 
 /// Finds the free point nearest to an end of a flight that no wall parts from it; if there is none,
 /// the nearest one at all. \param end heads to the steps
-std::optional<Point2> StoreyWays::freeBefore(std::size_t storey, const Pose2& end) const {
+std::optional<Point2> StoreyPaths::freeBefore(std::size_t storey, const Pose2& end) const {
     constexpr double kThin = 0.01;
     constexpr int kDirections = 16;
     const Obstacles& bodies = obstacles_[storey];
@@ -173,7 +173,7 @@ std::optional<Point2> StoreyWays::freeBefore(std::size_t storey, const Pose2& en
     return beyond;
 }
 
-const Landing* StoreyWays::landing(std::size_t passage, std::size_t stop) const {
+const Landing* StoreyPaths::landing(std::size_t passage, std::size_t stop) const {
     for (const Landing& landing : landings_)
         if (landing.passage == passage && landing.stop == stop) return &landing;
     return nullptr;
@@ -181,8 +181,8 @@ const Landing* StoreyWays::landing(std::size_t passage, std::size_t stop) const 
 
 /// Returns the ways from a landing to the nearest others of its storey and to the point farthest
 /// away.
-std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
-    const WayFinder& finder = finders_[landing.storey];
+std::vector<Segment2> StoreyPaths::waysOut(const Landing& landing) const {
+    const PathFinder& finder = finders_[landing.storey];
     std::vector<Segment2> out;
     const auto add = [&](const std::vector<Point2>& way) {
         Point2 from = landing.at.position;
@@ -197,7 +197,7 @@ std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
             others.emplace_back(distance(other.at.position, landing.at.position),
                                 other.at.position);
     const auto end =
-        others.begin() + static_cast<std::ptrdiff_t>(std::min(others.size(), kMaxWaysOut));
+        others.begin() + static_cast<std::ptrdiff_t>(std::min(others.size(), kMaxPathsOut));
     std::partial_sort(others.begin(), end, others.end(),
                       [](const auto& a, const auto& b) { return a.first < b.first; });
     std::for_each(others.begin(), end,
@@ -207,12 +207,14 @@ std::vector<Segment2> StoreyWays::waysOut(const Landing& landing) const {
     return out;
 }
 
-double StoreyWays::widthToWalk(double radius) { return 2 * (radius + WayFinder::kMargin + kRoom); }
+double StoreyPaths::widthToWalk(double radius) {
+    return 2 * (radius + PathFinder::kMargin + kRoom);
+}
 
-double StoreyWays::widthToPass(double radius) { return widthToWalk(radius) + 4 * radius; }
+double StoreyPaths::widthToPass(double radius) { return widthToWalk(radius) + 4 * radius; }
 
 /// Returns the length of the way over a passage from the landing to its far end, and its width.
-Vec2 StoreyWays::sizeOf(const Landing& landing) const {
+Vec2 StoreyPaths::sizeOf(const Landing& landing) const {
     const StoreyLink& passage = (*passages_)[landing.passage];
     return {landing.lane + (passage.is_lift ? passage.cabin.length : passage.length),
             passage.is_lift ? passage.cabin.width : passage.width};
@@ -220,7 +222,7 @@ Vec2 StoreyWays::sizeOf(const Landing& landing) const {
 
 /// Returns the landings of its storey, itself among them, whose passages, and the floor that is
 /// left free before them, may have points at most this far from the landing.
-std::vector<const Landing*> StoreyWays::landingsNear(const Landing& landing, double far) const {
+std::vector<const Landing*> StoreyPaths::landingsNear(const Landing& landing, double far) const {
     const double free = kLeftFree + 2 * (2 * size_.radius + kRoom);
     std::vector<const Landing*> near;
     for (const Landing& other : landings_) {
@@ -233,8 +235,8 @@ std::vector<const Landing*> StoreyWays::landingsNear(const Landing& landing, dou
 }
 
 /// Finds points near a landing that leave the way to the passages free.
-void StoreyWays::addSpots(Landing& landing) const {
-    const WayFinder& finder = finders_[landing.storey];
+void StoreyPaths::addSpots(Landing& landing) const {
+    const PathFinder& finder = finders_[landing.storey];
     const double wide = 2 * size_.radius;
     // The floor before the door of a lift is left free anyway.
     const std::vector<Segment2> ways_out =
@@ -277,7 +279,7 @@ void StoreyWays::addSpots(Landing& landing) const {
     }
 }
 
-std::string StoreyWays::refusal(const StoreyLink& passage, const MoverAbility& ability) const {
+std::string StoreyPaths::refusal(const StoreyLink& passage, const MoverAbility& ability) const {
     const double wide = 2 * size_.radius + kRoom;
     if (!passage.is_lift) {
         if (!ability.climbs) return "it does not climb stairs";
@@ -289,10 +291,10 @@ std::string StoreyWays::refusal(const StoreyLink& passage, const MoverAbility& a
     return slotIn(passage.cabin, {}, alone) ? "" : passage.id + " is too small for it";
 }
 
-std::optional<Route> StoreyWays::route(std::size_t from_storey, Point2 from, std::size_t to_storey,
-                                       Point2 to, const MoverAbility& ability,
-                                       const std::vector<double>& wait,
-                                       std::optional<std::size_t> only) const {
+std::optional<Route> StoreyPaths::route(std::size_t from_storey, Point2 from, std::size_t to_storey,
+                                        Point2 to, const MoverAbility& ability,
+                                        const std::vector<double>& wait,
+                                        std::optional<std::size_t> only) const {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     struct Node {
         double seconds = kInfinity, length = 0;

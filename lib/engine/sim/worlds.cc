@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/joined_worlds.h"
+#include "sim/worlds.h"
 
 #include <algorithm>
 #include <utility>
@@ -15,7 +15,7 @@ constexpr std::size_t kMaxPoints = 8;
 
 /// Adds the points of "upper/1,2;3,4", and of a single one "upper/1,2,90" the heading. Returns the
 /// reason why the text holds none, or "".
-std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, std::size_t room,
+std::string addPoints(std::string_view text, std::span<const RunRoom> rooms, std::size_t room,
                       TripPlan& plan) {
     std::vector<RoomPoint>& points = plan.points;
     for (;;) {
@@ -24,7 +24,7 @@ std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, 
         if (const auto slash = one.rfind('/'); slash != std::string_view::npos) {
             const std::string_view id = one.substr(0, slash);
             const auto named = std::find_if(rooms.begin(), rooms.end(),
-                                            [&](const JoinedRoom& each) { return each.id == id; });
+                                            [&](const RunRoom& each) { return each.id == id; });
             if (named == rooms.end()) return "no storey " + excerpt(id);
             room = static_cast<std::size_t>(named - rooms.begin());
             point = one.substr(slash + 1);
@@ -42,7 +42,7 @@ std::string addPoints(std::string_view text, std::span<const JoinedRoom> rooms, 
 
 }  // namespace
 
-ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const JoinedRoom> rooms,
+ParsedTrip parseTrip(std::span<const std::string_view> words, std::span<const RunRoom> rooms,
                      std::size_t room) {
     const bool is_path = words[0] == "PATH";
     ParsedTrip trip;
