@@ -590,7 +590,7 @@ PersonDeed putDown(const DeedMoment& moment) {
 }  // namespace
 
 void addDeeds() {
-    using Path = PersonVerb::Approach;
+    using Approach = PersonVerb::Approach;
     static const PersonVerb put_down{.word = "to",
                                      .target = "kitchen",
                                      .approach = Approach::Beside,

@@ -906,7 +906,7 @@ void addVerbAtOnce(const std::string& like, const std::string& name) {
         if (verb.verb != like) continue;
         PersonVerb at_once = verb;
         at_once.verb = name;
-        at_once.way = PersonVerb::Approach::None;
+        at_once.approach = PersonVerb::Approach::None;
         at_once.then = nullptr;
         addPersonVerb(at_once);
     }
