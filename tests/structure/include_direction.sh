@@ -139,7 +139,7 @@ expect lib/engine/site/a.cc '#include "passage/lift.h"' yes
 expect lib/engine/sim/a.cc '#include "passage/lift.h"' yes
 expect lib/engine/server/a.cc '#include "passage/lift.h"' yes
 expect lib/engine/passage/a.cc '#include "sim/world.h"' no
-expect lib/extensions/reality/a.cc '#include "cli/extension.h"' no
+expect lib/extensions/reality/a.cc '#include "cli/option_group.h"' no
 expect lib/engine/cli/a.cc '#include "extensions/reality/a.h"' yes
 expect lib/engine/sim/a.h $'//\n// Private to lib/engine/sim: parts\n#include "sim/a.h"' no
 expect lib/engine/passage/a.h $'//\n// Private to lib/engine/sim: parts\n#include "passage/a.h"' yes

@@ -4,7 +4,7 @@
 extension, and tools name extensions in tools/extensions.cc alone.
 
 An extension includes those alone that its CMakeLists.txt names in needed_extensions, and docs/architecture.md has a row
-for each, with the first sentence of that file.
+for each, with the first sentence of that file; tools/extensions.cc lists each once.
 
 Today's arrows against the rings (rings.txt) are in rings_allowed.txt, which may only shrink: a new arrow fails, and so
 does a line that no include needs any longer; --update removes such lines, and never adds one.
@@ -66,6 +66,14 @@ def wrong_rows(recipes, page):
            [f"docs/architecture.md: no extension has the row {row}" for row in table if row not in wanted]
 
 
+def unlisted(recipes, listed):
+    """Returns the extensions that the one list lacks, and what it lists besides. listed: tools/extensions.cc."""
+    names = set(re.findall(r"^\s*ISPACE_(\w+)$", listed, re.M))
+    wanted = {name.upper() for name in recipes}
+    return [f"tools/extensions.cc: lacks ISPACE_{name}" for name in sorted(wanted - names)] + \
+           [f"tools/extensions.cc: no extension for ISPACE_{name}" for name in sorted(names - wanted)]
+
+
 def sources(root):
     return {
         str(path.relative_to(root)): path.read_text(errors="replace")
@@ -95,6 +103,8 @@ def must_be_able_to_fail(rings):
         sys.exit("rings: the check does not see undeclared extensions")
     recipe = {"locks": "# SPDX\n# Locks of\n# doors. More.\nispace_library(locks)"}
     page = "| folder | what it adds |\n|---|---|\n| `locks` | Locks of doors |\n\n"
+    if unlisted(recipe, "  ISPACE_LOCKS\n") or not unlisted(recipe, "") or not unlisted({}, "  ISPACE_LOCKS\n"):
+        sys.exit("rings: the check does not see what the list lacks")
     if wrong_rows(recipe, page) or not wrong_rows(recipe, ""):
         sys.exit("rings: the check does not see missing rows")
     if arrows(tree, rings) != wanted:
@@ -111,6 +121,7 @@ def main(words):
     found = arrows(texts, rings)
     recipes = {file.parent.name: file.read_text() for file in (root / "lib/extensions").glob("*/CMakeLists.txt")}
     faults = undeclared(texts, recipes) + wrong_rows(recipes, (root / "docs/architecture.md").read_text())
+    faults += unlisted(recipes, (root / "tools/extensions.cc").read_text())
     for fault in faults:
         print(f"rings: {fault}")
     file = HERE / "rings_allowed.txt"

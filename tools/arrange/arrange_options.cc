@@ -156,7 +156,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     : ToolCommand("arrange", "[ENV] [LAYOUT]",
                   "Compute poses for sensors in a room: those of LAYOUT without one, and those of "
                   "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage."),
-      objectives_(arrangeObjectives()) {
+      objectives_(extensions().objectives()) {
     line_.example("arrange room.env --sensor urg-04lx:3 -o layout.3dm",
                   "poses of three laser scanners that cover most of the room");
     line_.example("arrange room.env --sensor urg-04lx:9 --target 95% -o few.3dm",
@@ -190,9 +190,9 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addFileOptions();
     line_.group("Jobs");
     addShareOptions();
-    line_.built(builtExtensions());
-    ToolExtensions extensions(toolExtensions(), "arrange");
-    extensions.declare(line_);
+    line_.built(extensions().names());
+    ToolExtensions tool_extensions(extensions().options(), "arrange");
+    tool_extensions.declare(line_);
     addSceneRules(line_, options_.rules);
     addStoreyOption(line_, options_.rules, "default: all storeys");
     addCommonOptions(line_, options_.common, "write the layout there (default: stdout)");
@@ -202,7 +202,8 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
                      "--refine",  "--curve",      "--report",  "--storey",    "--output",
                      "--quiet",   "--threads",    "--seed"});
     line_.parse(argc, argv);
-    options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
+    options_.task =
+        tool_extensions.task(line_, {options_.common, options_.rules, options_.operands});
     if (!options_.task) settle();
 }
 

@@ -280,9 +280,9 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "draw the sites that arrange --trace wrote to this file on the map, coloured by "
               "their best value",
               Enters::Nothing);
-    line.built(builtExtensions());
-    ToolExtensions extensions(toolExtensions(), "coverage");
-    extensions.declare(line);
+    line.built(extensions().names());
+    ToolExtensions tool_extensions(extensions().options(), "coverage");
+    tool_extensions.declare(line);
     addSceneRules(line, o.rules);
     addStoreyOption(line, o.rules, "default: all storeys");
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
@@ -292,7 +292,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                     "--quiet",      "--threads", "--seed"});
     line.parse(argc, argv);
 
-    o.task = extensions.task(line, {o.common, o.rules, o.operands});
+    o.task = tool_extensions.task(line, {o.common, o.rules, o.operands});
     if (o.task) return o;
     o.history_line = line.historyLine(o.operands);
     if (const auto cells = words.cells.choice()) o.measure.cells = *cells;

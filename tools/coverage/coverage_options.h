@@ -7,7 +7,7 @@
 
 #include "cli/batch.h"
 #include "cli/common_options.h"
-#include "cli/extension.h"
+#include "cli/option_group.h"
 #include "cli/presence_paths.h"
 #include "cli/report_options.h"
 #include "coverage/camera_rules.h"

@@ -316,9 +316,9 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addImportOptions(line, options.import);
     addStoreyOption(line, options.rules,
                     "of IFC also by number, from 1 for the lowest; default: all storeys");
-    line.built(builtExtensions());
-    ToolExtensions extensions(toolExtensions(), "envc");
-    extensions.declare(line);
+    line.built(extensions().names());
+    ToolExtensions tool_extensions(extensions().options(), "envc");
+    tool_extensions.declare(line);
     addSceneRules(line, options.rules);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");
     line.essential({"--version", "--to",         "--slice",       "--resolution", "--width",
@@ -328,7 +328,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
                     "--storey",  "--output",     "--quiet",       "--threads"});
     line.parse(argc, argv);
 
-    options.task = extensions.task(line, {options.common, options.rules, options.inputs});
+    options.task = tool_extensions.task(line, {options.common, options.rules, options.inputs});
     if (options.task) return options;
     if (options.inputs.empty()) options.inputs.emplace_back("-");
     if (options.import.units == "in") options.import.units = "inch";

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/common_options.h"
-#include "cli/extension.h"
+#include "cli/option_group.h"
 #include "io/exporters.h"
 #include "io/importers.h"
 #include "record/edit.h"

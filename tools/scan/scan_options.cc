@@ -43,15 +43,15 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
           "scan", "[ENV] [LAYOUT]",
           "Simulate the readings of sensors: lasers, 3-D rangers, cameras, ultrasonic receivers. "
           "Without LAYOUT read it from stdin unless ENV holds sensors with a pose.") {
-    line_.built(builtExtensions());
-    ToolExtensions extensions(toolExtensions(), "scan");
-    declare(extensions);
+    line_.built(extensions().names());
+    ToolExtensions tool_extensions(extensions().options(), "scan");
+    declare(tool_extensions);
     line_.essential({"--version", "--to", "--select", "--frames", "--noise", "--poses", "--model",
                      "--coordinates", "--size", "--samples", "--view", "--run", "--list-models",
                      "--storey", "--output", "--quiet", "--threads", "--seed"});
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
-    o.task = extensions.task(line_, {o.common, o.rules, o.operands});
+    o.task = tool_extensions.task(line_, {o.common, o.rules, o.operands});
     if (o.task) return;
     constexpr const char* kSingle[] = {"--view", "--run", "--list-models"};
     checkBatchOptions(line_, o.batch, o.common, o.operands, kSingle);
@@ -84,7 +84,7 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     check();
 }
 
-void ScanCommand::declare(ToolExtensions& extensions) {
+void ScanCommand::declare(ToolExtensions& tool_extensions) {
     ScanToolOptions& o = options_;
     line_.example("scan room.env layout.3dm --noise -o readings.jsonl",
                   "a reading of each sensor, with the noise of its device");
@@ -152,7 +152,7 @@ void ScanCommand::declare(ToolExtensions& extensions) {
     declarePictures();
     line_.group("Views instead of readings");
     addViewOptions(line_, o.view);
-    extensions.declare(line_);
+    tool_extensions.declare(line_);
     line_.group("Jobs");
     addBatchOptions(line_, o.batch, "of its readings");
     line_.flag("--list-models", o.list_models, "list the sensors of the device catalogue, and end",

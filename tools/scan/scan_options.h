@@ -8,7 +8,7 @@
 #include "cli/batch.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
-#include "cli/extension.h"
+#include "cli/option_group.h"
 #include "scan/scan_views.h"
 #include "sense/formats/mcap_writer.h"
 #include "sense/formats/point_cloud.h"

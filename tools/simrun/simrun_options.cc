@@ -57,9 +57,9 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     declareJudgement();
     line_.group("The server");
     declareServer();
-    line_.built(builtExtensions());
-    ToolExtensions extensions(toolExtensions(), "simrun");
-    extensions.declare(line_);
+    line_.built(extensions().names());
+    ToolExtensions tool_extensions(extensions().options(), "simrun");
+    tool_extensions.declare(line_);
     addSceneRules(line_, options_.rules);
     addStoreyOption(line_, options_.rules, "default: all storeys");
     addCommonOptions(
@@ -70,7 +70,8 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
                      "--report", "--suggest", "--replay", "--listen", "--storey", "--output",
                      "--quiet", "--threads", "--seed"});
     line_.parse(argc, argv);
-    options_.task = extensions.task(line_, {options_.common, options_.rules, options_.operands});
+    options_.task =
+        tool_extensions.task(line_, {options_.common, options_.rules, options_.operands});
     if (options_.task) return;
     takeJudgement();
     checkReplay();
@@ -145,7 +146,7 @@ void SimrunCommand::declareRun() {
 
 void SimrunCommand::declareJudgement() {
     SimrunOptions& o = options_;
-    o.judges = std::make_shared<JudgeExtensions>(runJudges());
+    o.judges = std::make_shared<JudgeExtensions>(extensions().judges());
     o.judges->declare(line_);
     line_.file("--junit", "FILE", o.junit,
                "write the verdicts on the expectations there, as XML that CI servers read",
@@ -310,7 +311,7 @@ void SimrunCommand::declareServer() {
     line_.switchFlag("--shutdown", "--no-shutdown", o.shutdown,
                      "let the request SHUTDOWN end the run (default)", "reject it",
                      Enters::Nothing);
-    o.bridges = std::make_shared<BridgeExtensions>(runBridges());
+    o.bridges = std::make_shared<BridgeExtensions>(extensions().bridges());
     o.bridges->declare(line_);
 }
 

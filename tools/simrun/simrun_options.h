@@ -8,7 +8,7 @@
 
 #include "cli/command_line.h"
 #include "cli/common_options.h"
-#include "cli/extension.h"
+#include "cli/option_group.h"
 #include "cli/run_bridge.h"
 #include "cli/run_judge.h"
 #include "server/server.h"

@@ -14,7 +14,7 @@ namespace ispace {
 
 void servePorts(Server& server, Simulation& simulation, const SimrunOptions& options,
                 const std::string& title, std::vector<std::string> replayed) {
-    for (const std::string& note : server.serveRoles(roleServices()))
+    for (const std::string& note : server.serveRoles(extensions().roles()))
         tell(options.common, "simrun", note);
     options.bridges->open(server, simulation,
                           {options.common, title, std::move(replayed), options.max_recorded});

@@ -160,7 +160,7 @@ std::vector<BatchJob> readBatchList(std::string_view bytes, const std::string& n
 
 namespace {
 
-using Verdict = JunitCase::Outcome;
+using JobVerdict = JunitCase::Outcome;
 
 }  // namespace
 
@@ -200,7 +200,7 @@ JobOutcome JobOutcome::fromBytes(std::string_view bytes) {
     }
     for (std::uint64_t left = from.number(); left > 0; --left) {
         JunitCase& verdict = outcome.verdicts.emplace_back();
-        verdict.outcome = static_cast<Verdict>(from.number());
+        verdict.outcome = static_cast<JobVerdict>(from.number());
         verdict.name = from.text();
         verdict.message = from.text();
     }
@@ -273,7 +273,7 @@ JobOutcome outcomeOf(const BatchRun& run, const BatchJob& job, const JobWork& wo
         outcome.messages.insert(outcome.messages.end(), failure.messages.begin(),
                                 failure.messages.end());
         if (failure.status != JobOutcome::kUnmet)
-            outcome.verdicts = {{.name = job.name, .outcome = Verdict::Error, .message = error}};
+            outcome.verdicts = {{.name = job.name, .outcome = JobVerdict::Error, .message = error}};
         if (outcome.line.empty() && !run.product.empty())
             outcome.line =
                 jobLine(run.tool, job).key("error").value(error).endObject().take() + '\n';

@@ -2,79 +2,34 @@
 #include "cli/extension.h"
 
 #include <algorithm>
-#include <utility>
 
-#include "base/error.h"
+#include "io/importers.h"
+#include "record/missing_keywords.h"
 
 namespace ispace {
 
-namespace {
-
-bool contains(std::span<const std::string> names, std::string_view name) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// Returns the names of the options that every task obeys.
-std::vector<std::string> commonNames() {
-    CommandLine line("", "", "");
-    CommonOptions common;
-    SceneRules rules;
-    addCommonOptions(line, common, "product");
-    addSceneRules(line, rules);
-    addStoreyOption(line, rules, "");
-    return line.names();
-}
-
-}  // namespace
-
-ToolExtensions::ToolExtensions(std::span<const ToolExtension> rows, std::string_view tool) {
-    for (const ToolExtension& row : rows) {
-        if (row.tool != tool) continue;
-        if (row.make == nullptr)
-            missing_.push_back(row);
+Extensions::Extensions(std::span<const Extension> built, std::span<const MissingOffer> missing) {
+    for (const Extension& each : built) {
+        names_.push_back(each.name);
+        for (const ToolOptions& row : each.options)
+            options_.push_back({each.name, row.tool, row.make});
+        if (each.objective != nullptr) objectives_.push_back({each.name, each.objective});
+        if (each.judge != nullptr) judges_.push_back(each.judge);
+        if (each.bridge != nullptr) bridges_.push_back({each.name, each.bridge});
+        if (each.role != nullptr) roles_.push_back(each.role);
+        if (each.add != nullptr) each.add();
+    }
+    std::sort(names_.begin(), names_.end());
+    for (const auto& [extension, owner, name] : missing) {
+        if (owner == "record")
+            addMissingKeyword(name, extension);
+        else if (owner == "format")
+            addMissingFormat(name, extension);
+        else if (owner == "objective")
+            objectives_.push_back({extension, nullptr, name});
         else
-            members_.push_back({std::string(row.extension), row.make()});
+            options_.push_back({extension, owner, nullptr, name});
     }
-}
-
-void ToolExtensions::declare(CommandLine& line) {
-    for (Member& member : members_) {
-        const std::size_t before = line.names().size();
-        line.extension(member.extension);
-        member.group->declare(line);
-        line.extension("");
-        const std::vector<std::string> names = line.names();
-        member.options.assign(names.begin() + static_cast<std::ptrdiff_t>(before), names.end());
-    }
-    for (const ToolExtension& row : missing_)
-        line.renamed(std::string(row.missing), "it belongs to the extension " +
-                                                   std::string(row.extension) +
-                                                   ", which this build lacks");
-}
-
-ExtensionTask ToolExtensions::task(const CommandLine& line, TaskInput input) const {
-    const Member* asked = nullptr;
-    for (const Member& member : members_) {
-        if (!member.group->isAsked()) continue;
-        if (asked != nullptr)
-            throw UsageError(asked->options.front() + " and " + member.options.front() +
-                             " are two tasks: give one of them");
-        asked = &member;
-    }
-    for (const Member& member : members_)
-        for (const std::string& name : member.options)
-            if (&member != asked && line.given(name))
-                throw UsageError(name + " goes with " + member.options.front());
-    if (asked == nullptr) return {};
-    const std::span<const std::string_view> honoured = asked->group->honours();
-    const std::vector<std::string> common = commonNames();
-    for (const std::string& name : line.names())
-        if (line.given(name) && !contains(asked->options, name) && !contains(common, name) &&
-            std::find(honoured.begin(), honoured.end(), name) == honoured.end())
-            throw UsageError(name + " does not go with " + asked->options.front());
-    asked->group->take(line);
-    input.history_line = line.historyLine(input.operands);
-    return [group = asked->group, input = std::move(input)] { group->run(input); };
 }
 
 }  // namespace ispace

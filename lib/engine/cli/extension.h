@@ -1,90 +1,78 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a folder of lib/extensions adds to the command line of a tool: options, and a task that they
-// ask for instead of the tool's own. tools/extensions.cc lists the folders; a tool knows the list
-// alone, and the core builds without it.
+// What a folder of lib/extensions contributes, in one value, and what a build has of them.
+//
+// Each folder defines one function in its extension.cc, in the namespace `extension`:
+//
+//     namespace ispace::extension {
+//     Extension doorcounters() { return {.name = "doorcounters", .add = addDoorCounters}; }
+//     }
+//
+// tools/extensions.cc lists these functions. No other file of the core or of the tools names an
+// extension.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "cli/command_line.h"
-#include "cli/common_options.h"
+#include "cli/objective_extension.h"
+#include "cli/option_group.h"
+#include "cli/run_bridge.h"
+#include "cli/run_judge.h"
+#include "server/client_role.h"
 
 namespace ispace {
 
-/// The command that a task belongs to.
-struct TaskInput {
-    CommonOptions common;
-    SceneRules rules;
-    std::vector<std::string> operands;
-    std::string history_line = {};  ///< for the product
+/// The options of an extension in one tool.
+struct ToolOptions {
+    std::string_view tool;  ///< "scan"
+    std::unique_ptr<OptionGroup> (*make)() = nullptr;
 };
 
-/// A task of an extension, ready to run; empty: the command asks for the tool's own.
-using ExtensionTask = std::function<void()>;
+/// A contribution. All but the name may be left out.
+struct Extension {
+    std::string_view name;  ///< of its folder
+    /// Adds its rows to the tables of the library: importers, records, kinds of sensors, verbs of
+    /// people. It is called once, before the first input is read.
+    void (*add)() = nullptr;
+    std::vector<ToolOptions> options = {};                     ///< at most one for each tool
+    std::unique_ptr<ObjectiveGroup> (*objective)() = nullptr;  ///< of `arrange --objective`
+    std::unique_ptr<JudgeGroup> (*judge)() = nullptr;          ///< of runs of `simrun`
+    std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;        ///< another protocol of a run
+    MakeRoleService role = nullptr;                            ///< requests of the protocol
+};
 
-/// The options of one extension in one tool, and their values: an object is made for each command
-/// line and kept until its task is done.
-///
-///     class Against : public OptionGroup {
-///         void declare(CommandLine& line) override { line.file("--against", "LOG", log_, "...",
-///         Enters::History); } bool isAsked() const override { return !log_.empty(); }
-///         std::span<const std::string_view> honours() const override { return kHonoured; }
-///         void take(const CommandLine& line) override { select_ = line.valuesOf("--select"); }
-///         void run(const TaskInput& input) override;
-///         std::string log_;
-///     };
-class OptionGroup {
+/// What an extension that a build lacks would bring.
+struct MissingOffer {
+    std::string_view extension;
+    /// A tool (`name` is its option), or "record", "format" or "objective".
+    std::string_view owner;
+    std::string_view name;
+};
+
+/// The extensions of a build, sorted by what they contribute; each list is in their order, and ends
+/// with rows for what the build lacks, which name the extension to users that ask for it.
+class Extensions {
   public:
-    virtual ~OptionGroup() = default;
-    /// Declares the options, bound to members. The group begins with line.group(HEADING), letters
-    /// and blanks.
-    virtual void declare(CommandLine& line) = 0;
-    /// Returns true if the parsed options ask for the task of the group.
-    [[nodiscard]] virtual bool isAsked() const = 0;
-    /// Returns the options of the tool, by their long names ("--select"), that have a meaning for
-    /// the task. Those of addCommonOptions() and addSceneRules() always have, and --storey.
-    [[nodiscard]] virtual std::span<const std::string_view> honours() const = 0;
-    /// Checks the options with each other, and takes what the tool's own say
-    /// (CommandLine::valuesOf). \throws UsageError
-    virtual void take(const CommandLine& line) = 0;
-    virtual void run(const TaskInput& input) = 0;
-};
+    /// Calls add() of each extension.
+    Extensions(std::span<const Extension> built, std::span<const MissingOffer> missing);
 
-/// A row of tools/extensions.cc.
-struct ToolExtension {
-    std::string_view extension, tool;
-    std::unique_ptr<OptionGroup> (*make)();  ///< null for an option that this build lacks
-    std::string_view missing = {};           ///< that option, by its long name
-};
-
-/// The extensions of a tool's command line.
-class ToolExtensions {
-  public:
-    /// \param rows of all tools, in the order of `--help`
-    ToolExtensions(std::span<const ToolExtension> rows, std::string_view tool);
-
-    /// Declares the groups. An option of an extension that this build lacks is an error that names
-    /// the extension.
-    void declare(CommandLine& line);
-
-    /// Returns the task that the parsed options ask for, with its history line; empty for the
-    /// tool's own. An option that has no meaning for the task is an error, and so is one of a group
-    /// whose task is not asked for. \throws UsageError
-    [[nodiscard]] ExtensionTask task(const CommandLine& line, TaskInput input) const;
+    /// Names in alphabetical order.
+    [[nodiscard]] const std::vector<std::string_view>& names() const { return names_; }
+    [[nodiscard]] const std::vector<ToolExtension>& options() const { return options_; }
+    [[nodiscard]] const std::vector<ObjectiveRow>& objectives() const { return objectives_; }
+    [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
+    [[nodiscard]] const std::vector<BridgeRow>& bridges() const { return bridges_; }
+    [[nodiscard]] const std::vector<MakeRoleService>& roles() const { return roles_; }
 
   private:
-    struct Member {
-        std::string extension;
-        std::shared_ptr<OptionGroup> group;
-        std::vector<std::string> options = {};  ///< declared by the group
-    };
-    std::vector<Member> members_;
-    std::vector<ToolExtension> missing_;
+    std::vector<std::string_view> names_;
+    std::vector<ToolExtension> options_;
+    std::vector<ObjectiveRow> objectives_;
+    std::vector<MakeJudge> judges_;
+    std::vector<BridgeRow> bridges_;
+    std::vector<MakeRoleService> roles_;
 };
 
 }  // namespace ispace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the objectives of arrange: a word of --objective,
-// options, and the demand that counts instead of the floor. tools/extensions.cc lists them.
+// options, and the demand that counts instead of the floor. See cli/extension.h.
 #pragma once
 
 #include <memory>
@@ -44,7 +44,7 @@ class ObjectiveGroup {
         const CommonOptions& common, std::vector<std::string>& files) const = 0;
 };
 
-/// A row of tools/extensions.cc.
+/// A row of Extensions, see cli/extension.h.
 struct ObjectiveRow {
     std::string_view extension;
     std::unique_ptr<ObjectiveGroup> (*make)();  ///< null for an objective that this build lacks

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the ways into a run: options of simrun, and the bridges
-// that they ask for (server/bridge.h). tools/extensions.cc lists the folders.
+// that they ask for (server/bridge.h). See cli/extension.h.
 #pragma once
 
 #include <cstddef>
@@ -64,7 +64,7 @@ class BridgeGroup {
     virtual void commit(const CommonOptions& /*common*/) {}
 };
 
-/// A row of tools/extensions.cc.
+/// A row of Extensions, see cli/extension.h.
 struct BridgeRow {
     std::string_view extension;
     std::unique_ptr<BridgeGroup> (*make)();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the judgement of runs: options of simrun that say what a
-// run must do, and the judge that watches it. tools/extensions.cc lists them.
+// run must do, and the judge that watches it. See cli/extension.h.
 #pragma once
 
 #include <memory>
@@ -55,7 +55,7 @@ class JudgeGroup {
     [[nodiscard]] virtual std::unique_ptr<RunJudge> judge(std::span<const RunRoom> rooms) const = 0;
 };
 
-/// A row of tools/extensions.cc.
+/// A row of Extensions, see cli/extension.h.
 using MakeJudge = std::unique_ptr<JudgeGroup> (*)();
 
 /// The judges that extensions add to one command line.

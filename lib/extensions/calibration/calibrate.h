@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "cli/extension.h"
+#include "cli/option_group.h"
 #include "io/importers.h"
 
 namespace ispace {

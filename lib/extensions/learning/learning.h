@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "cli/extension.h"
+#include "cli/option_group.h"
 
 namespace ispace {
 

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/bumpers/bumper.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace::extension {
+
+Extension bumpers() {
+    return {.name = "bumpers",
+            .add =
+                [] {
+                    addSceneSchemas(bumperSchemas());
+                    addBumpers();
+                },
+            .role = makeBumpers};
+}
+
+}  // namespace ispace::extension

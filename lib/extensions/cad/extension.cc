@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/cad/cad.h"
+#include "io/importers.h"
+
+namespace ispace::extension {
+
+Extension cad() {
+    return {.name = "cad", .add = [] { addImporters(cadImporters()); }};
+}
+
+}  // namespace ispace::extension

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/calibration/calibrate.h"
+#include "io/importers.h"
+
+namespace ispace::extension {
+
+Extension calibration() {
+    return {.name = "calibration",
+            .add = [] { addImporters(calibrationImporters()); },
+            .options = {{"envc", makeCalibration}}};
+}
+
+}  // namespace ispace::extension

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/gazebo/gazebo.h"
+#include "io/importers.h"
+
+namespace ispace::extension {
+
+Extension gazebo() {
+    return {.name = "gazebo", .add = [] { addImporters(gazeboImporters()); }};
+}
+
+}  // namespace ispace::extension

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/heads/head.h"
+#include "extensions/heads/head_role.h"
+#include "scene/placement_schemas.h"
+
+namespace ispace::extension {
+
+Extension heads() {
+    return {.name = "heads",
+            .add =
+                [] {
+                    addSceneSchemas(headSchemas());
+                    addHeads();
+                },
+            .role = makeHeads};
+}
+
+}  // namespace ispace::extension

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/judge/judge.h"
+
+namespace ispace::extension {
+
+Extension judge() { return {.name = "judge", .options = {{"coverage", makeTrackJudge}}}; }
+
+}  // namespace ispace::extension

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/locks/lock.h"
+#include "extensions/locks/lock_role.h"
+
+namespace ispace::extension {
+
+Extension locks() { return {.name = "locks", .add = addLocks, .role = makeLocks}; }
+
+}  // namespace ispace::extension

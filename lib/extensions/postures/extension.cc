@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/postures/posture.h"
+
+namespace ispace::extension {
+
+Extension postures() { return {.name = "postures", .add = addPostures}; }
+
+}  // namespace ispace::extension

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/webots/webots.h"
+#include "io/importers.h"
+
+namespace ispace::extension {
+
+Extension webots() {
+    return {.name = "webots", .add = [] { addImporters(webotsImporters()); }};
+}
+
+}  // namespace ispace::extension
