@@ -14,6 +14,7 @@
 #include "report/map/map.h"
 #include "report/page/coverage_page.h"
 #include "site/site_page.h"
+#include "site/site_rules.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -254,16 +255,12 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command) {
     const SiteScene site = laidOut(work, arrangement, layout);
-    SiteCoverage coverage = measureSite(site, measuredAs(work.how));
-    coverage.rules = rulesByStorey(work, arrangement, coverage);
+    const SiteCoverage coverage = measureSite(site, measuredAs(work.how));
+    const std::vector<CameraRules> rules = rulesByStorey(work, arrangement, coverage);
     const std::optional<SiteObjectives> objectives = objectivesIn(work, site, coverage);
     SiteParts parts;
-    if (objectives) {
-        parts.storeys.resize(coverage.storeys.size());
-        for (std::size_t i = 0; i < parts.storeys.size(); ++i)
-            parts.storeys[i].objectives = &objectives->storeys[i];
-        parts.sum.objectives = &objectives->all;
-    }
+    addRules(parts, site, coverage, rules);
+    if (objectives) addSections<ObjectivesSection>(parts, objectives->storeys, objectives->all);
     const std::string suffix = suffixOf(options.report_file);
     if (suffix == "json") return siteCoverageJson(site, coverage, parts);
     SitePageInput page{site, coverage, nameOf(work.input), command, targetOf(work, arrangement)};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +30,7 @@
 #include "report/coverage_formats.h"
 #include "report/map/depth_shades.h"
 #include "report/map/map.h"
+#include "report/presence_report.h"
 #include "report/trace_file.h"
 #include "scene/findings/findings.h"
 #include "scene/run/run_reader.h"
@@ -54,17 +56,14 @@ const Storey& storeyOf(const SiteInput& input, std::size_t room) {
 
 }  // namespace
 
-SiteParts SiteResults::parts() const {
+SiteParts SiteResults::parts(const SiteScene& building) const {
     SiteParts parts;
-    if (run) parts = partsOf(*run);
-    parts.storeys.resize(coverage.storeys.size());
-    for (std::size_t i = 0; i < presence.size(); ++i) parts.storeys[i].presence = &presence[i];
-    for (std::size_t i = 0; i < objectives.size(); ++i)
-        parts.storeys[i].objectives = &objectives[i];
-    if (robustness) parts.sum.robustness = &*robustness;
-    if (presence_sum) parts.sum.presence = &*presence_sum;
-    if (objectives_sum) parts.sum.objectives = &*objectives_sum;
-    if (advice) parts.sum.advice = &*advice;
+    addRules(parts, building, coverage, rules);
+    if (objectives_sum) addSections<ObjectivesSection>(parts, objectives, *objectives_sum);
+    if (robustness) parts.sum.push_back(std::make_shared<RobustnessSection>(*robustness));
+    if (run) addRun(parts, building, *run);
+    if (presence_sum) addSections<PresenceSection>(parts, presence, *presence_sum);
+    if (advice) parts.sum.push_back(std::make_shared<AdviceSection>(*advice));
     return parts;
 }
 
@@ -272,8 +271,8 @@ void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
 void measureRules(const CoverageToolOptions& options, const SiteInput& input,
                   SiteResults& results) {
     if (options.facing.empty() && options.privacy.empty()) return;
-    results.coverage.rules = measureSiteRules(input.building, results.coverage, options.measure,
-                                              options.facing, options.privacy);
+    results.rules = measureSiteRules(input.building, results.coverage, options.measure,
+                                     options.facing, options.privacy);
     if (!options.facing.empty() && options.measure.plane == 0)
         tell(options.common, "coverage", std::string(kFacesOnFloor));
 }
@@ -354,7 +353,8 @@ void suggest(const CoverageToolOptions& options, const SiteInput& input, SiteRes
     std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
     SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
                       options.time_limit);
-    results.advice = adviceFor(input.building, results.coverage, wanted, shippedDevices(), watch);
+    results.advice =
+        adviceFor(input.building, results.coverage, results.rules, wanted, shippedDevices(), watch);
     results.advice->command = editCommand(input.named, options.rules);
     results.advice->is_cut = watch.stopped();
     signal = watch.signal();
@@ -378,18 +378,19 @@ Document documentOf(const CoverageToolOptions& options, const SiteInput& input, 
     return document;
 }
 
-/// Returns what the map of a room shows.
+/// Returns what the map of a room shows. \param parts of its report; they outlive the map
 MapOptions mapOf(const CoverageToolOptions& options, const SiteInput& input,
-                 const SiteResults& results, std::size_t room) {
+                 const SiteResults& results, const SiteParts& parts, std::size_t room) {
     MapOptions map = options.map;
-    if (!results.objectives.empty()) map.objectives = &results.objectives[room];
-    if (results.run) map.run = &results.run->storeys[room];
+    // The last section lies below the others.
+    if (!parts.storeys.empty())
+        for (auto part = parts.storeys[room].rbegin(); part != parts.storeys[room].rend(); ++part)
+            if (const MapLayer* const layer = (*part)->mapLayer()) map.layers.push_back(layer);
     if (input.isOneRoom()) {
         map.title = input.environment_operand == "-" ? "" : baseName(input.environment_operand);
         map.trace = results.tried;
         return map;
     }
-    if (map.run != nullptr && map.run->members.empty()) map.run = nullptr;
     map.title = storeyOf(input, room).id;
     map.redundancy_scale = redundancyScale(results.coverage);
     std::copy_if(results.tried.begin(), results.tried.end(), std::back_inserter(map.trace),
@@ -403,9 +404,10 @@ void writeProduct(const CoverageToolOptions& options, const SiteInput& input,
     const std::string& output = options.common.output;
     const CoverageFormat& format = *options.format;
     const Scene& scene = *results.coverage.floors[room];
+    const SiteParts parts = results.parts(input.building);
     CoverageProduct product{scene, results.coverage.storeys[room],
                             results.other ? &results.other->storeys[room] : nullptr,
-                            mapOf(options, input, results, room)};
+                            mapOf(options, input, results, parts, room)};
     product.document = documentOf(options, input, room, scene);
     product.speeds = options.speeds;
     if (const auto* cells = std::get_if<CellSize>(&options.measure.cells))
@@ -423,9 +425,10 @@ void writeProduct(const CoverageToolOptions& options, const SiteInput& input,
 /// Draws all storeys on one page.
 void writePanels(const CoverageToolOptions& options, const SiteInput& input,
                  const SiteResults& results) {
+    const SiteParts parts = results.parts(input.building);
     std::vector<Picture> panels;
     for (std::size_t i = 0; i < results.coverage.storeys.size(); ++i) {
-        MapOptions map = mapOf(options, input, results, i);
+        MapOptions map = mapOf(options, input, results, parts, i);
         map.format = *options.format->picture;
         panels.push_back(coverageMap(*results.coverage.floors[i], results.coverage.storeys[i], map,
                                      results.other ? &results.other->storeys[i] : nullptr));
@@ -492,7 +495,7 @@ std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const SiteSc
             verdicts.push_back(
                 caseOf(requirementText(requirement), verdict.is_met, std::move(verdict.text)));
         }
-    for (const JudgedRule& rule : judgedInSite(building, results.coverage.rules))
+    for (const JudgedRule& rule : judgedInSite(building, results.rules))
         if (rule.is_required)
             verdicts.push_back(caseOf(rule.rule, rule.is_met, rule.rule + ": " + rule.finding));
     return verdicts;

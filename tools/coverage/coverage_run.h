@@ -16,6 +16,8 @@
 #include "report/objective_report.h"
 #include "report/suggestion_report.h"
 #include "site/site_coverage.h"
+#include "site/site_rules.h"
+#include "site/site_run_coverage.h"
 
 namespace ispace {
 
@@ -24,7 +26,8 @@ struct SiteResults {
     SiteCoverage coverage;
     std::optional<SiteCoverage> other;  ///< of --compare
     std::optional<SiteRunCoverage> run;
-    std::vector<TriedPose> tried;  ///< of --trace
+    std::vector<CameraRules> rules;  ///< by storey; empty: none
+    std::vector<TriedPose> tried;    ///< of --trace
     std::vector<ObjectiveFigures> objectives;
     std::optional<ObjectiveFigures> objectives_sum;
     std::vector<Presence> presence;
@@ -32,8 +35,8 @@ struct SiteResults {
     std::optional<Robustness> robustness;
     std::optional<Advice> advice;
 
-    /// Returns the parts of a report that were asked for. Keeps pointers into the results.
-    [[nodiscard]] SiteParts parts() const;
+    /// Returns the parts of a report that were asked for. They refer to the results.
+    [[nodiscard]] SiteParts parts(const SiteScene& building) const;
 };
 
 /// Returns the operands, or what a record of --run holds: its scene, or its building.

@@ -66,7 +66,8 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
                        SiteResults& results) {
     const std::string suffix = suffixOf(options.report);
     const SiteCoverage& coverage = results.coverage;
-    if (suffix == "json") return siteCoverageJson(input.building, coverage, results.parts());
+    if (suffix == "json")
+        return siteCoverageJson(input.building, coverage, results.parts(input.building));
     SitePageInput page{input.building, coverage, "", options.history_line};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     const auto add = [&page](const std::string& phrase, const Verdict& verdict) {
@@ -79,7 +80,7 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
         for (const PresenceRequirement& requirement : options.presence_requirements)
             add(requirementPhrase(requirement),
                 checkRequirement(requirement, *results.presence_sum));
-    page.parts = results.parts();
+    page.parts = results.parts(input.building);
     page.findings = sensorFindings(input.building);
     page.media =
         suffix == "pdf" ? CoveragePageInput::Media::Paper : CoveragePageInput::Media::Screen;
@@ -118,7 +119,7 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
     if (const std::string text = writeMaterialOf(options.page, input.rooms()); !text.empty())
         warn(options.common, "coverage", text);
-    const SiteParts parts = results.parts();
+    const SiteParts parts = results.parts(input.building);
     writeAll("-", options.json ? siteCoverageJson(input.building, results.coverage, parts)
                                : siteCoverageText(input.building, results.coverage, parts));
     if (signal != 0) endBySignal(signal);

@@ -40,7 +40,8 @@ std::string reportFile(const SimrunOptions& options, const SiteInput& input, con
     const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
     const SiteCoverage coverage = measureSite(building, {}, progress.get());
     const std::optional<SiteRunCoverage> run = recordedRun(options, building);
-    const SiteParts parts = run ? partsOf(*run) : SiteParts();
+    SiteParts parts;
+    if (run) addRun(parts, building, *run);
     const std::string suffix = suffixOf(options.report);
     if (suffix == "json") return siteCoverageJson(building, coverage, parts);
     SitePageInput page{building, coverage, "", command, {}, parts};

@@ -8,7 +8,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/zone.h"
-#include "report/coverage_report.h"
+#include "report/page/coverage_page.h"
 
 namespace ispace {
 
@@ -88,10 +88,10 @@ std::vector<JudgedRule> judgedRules(const CameraRules& rules) {
     return all;
 }
 
-void writeCameraRules(JsonWriter& json, const CameraRules& rules) {
-    if (!rules.facing.empty()) {
+void RulesSection::writeJson(JsonWriter& json) const {
+    if (!rules_.facing.empty()) {
         json.key("facing").beginArray();
-        for (const FacingResult& result : rules.facing) {
+        for (const FacingResult& result : rules_.facing) {
             json.beginObject();
             json.key("zone").value(result.rule.zone);
             if (!result.rule.door.empty()) json.key("door").value(result.rule.door);
@@ -111,9 +111,9 @@ void writeCameraRules(JsonWriter& json, const CameraRules& rules) {
         }
         json.endArray();
     }
-    if (rules.privacy.empty()) return;
+    if (rules_.privacy.empty()) return;
     json.key("privacy").beginArray();
-    for (const PrivacyResult& result : rules.privacy) {
+    for (const PrivacyResult& result : rules_.privacy) {
         json.beginObject();
         json.key("zone").value(result.zone);
         writeNumber(json, "density", result.density);
@@ -128,11 +128,46 @@ void writeCameraRules(JsonWriter& json, const CameraRules& rules) {
     json.endArray();
 }
 
-std::string cameraRulesText(const CameraRules& rules) {
+std::string RulesSection::text() const {
     std::string text;
-    for (const JudgedRule& rule : judgedRules(rules))
+    for (const JudgedRule& rule : judgedRules(rules_))
         text += rule.rule + ": " + rule.finding + '\n';
     return text.empty() ? "" : '\n' + text;
+}
+
+PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules) {
+    PageTable table{std::move(caption), "lll", {"rule", "result", "measured"}, {}};
+    for (const JudgedRule& rule : rules) {
+        table.rows.push_back({rule.plain.empty() ? rule.rule : rule.plain,
+                              !rule.is_required ? "-"
+                              : rule.is_met     ? "met"
+                                                : "not met",
+                              rule.finding});
+        table.tones.push_back(!rule.is_required ? Tone::Plain
+                              : rule.is_met     ? Tone::Good
+                                                : Tone::Bad);
+    }
+    return table;
+}
+
+PageAdditions RulesSection::page(const PageSubject& subject) const {
+    PageAdditions added;
+    if (subject.of != PageSubject::Of::Room) return added;
+    const std::vector<JudgedRule> rules = judgedRules(rules_);
+    for (const JudgedRule& one : rules)
+        if (one.is_required)
+            added.judged.push_back(
+                {"Required: " +
+                     (one.plain.empty() ? one.rule
+                                        : one.plain + facesJudgedAtText(subject.report)) +
+                     ": " + outcomeText(one.is_met, one.finding),
+                 one.is_met ? Tone::Good : Tone::Bad});
+    added.figures.push_back({"rules",
+                             "Faces and privacy",
+                             {rulesTable("directions of faces" + facesJudgedAtText(subject.report) +
+                                             ", and zones that cameras must not see",
+                                         rules)}});
+    return added;
 }
 
 }  // namespace ispace

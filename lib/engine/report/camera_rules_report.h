@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/json_writer.h"
 #include "coverage/camera_rules.h"
+#include "report/report_section.h"
 
 namespace ispace {
 
@@ -27,10 +29,20 @@ struct JudgedRule {
 /// Returns the rules in the order of the results, those of facing first.
 std::vector<JudgedRule> judgedRules(const CameraRules& rules);
 
-/// Writes the members `facing` and `privacy` of coverageJson().
-void writeCameraRules(JsonWriter& json, const CameraRules& rules);
+/// Builds the table of rules of cameras.
+PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules);
 
-/// Writes a line for each rule.
-std::string cameraRulesText(const CameraRules& rules);
+/// Rules of cameras in a room: members `facing` and `privacy`, a line for each rule.
+class RulesSection final : public ReportSection {
+  public:
+    explicit RulesSection(const CameraRules& rules) : rules_(rules) {}
+    [[nodiscard]] std::string_view name() const override { return "rules"; }
+    void writeJson(JsonWriter& json) const override;
+    [[nodiscard]] std::string text() const override;
+    [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;
+
+  private:
+    const CameraRules& rules_;
+};
 
 }  // namespace ispace

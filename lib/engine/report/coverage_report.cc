@@ -6,8 +6,6 @@
 #include "base/json_writer.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "report/presence_report.h"
-#include "report/run_report.h"
 #include "scene/sensor/density_classes.h"
 
 namespace ispace {
@@ -118,12 +116,7 @@ void writeComparison(JsonWriter& json, const Comparison& comparison) {
 }
 
 void writeParts(JsonWriter& json, const ReportParts& parts) {
-    if (parts.rules != nullptr) writeCameraRules(json, *parts.rules);
-    if (parts.objectives != nullptr) writeObjectives(json, *parts.objectives);
-    if (parts.robustness != nullptr) writeRobustness(json, *parts.robustness);
-    if (parts.run != nullptr) writeRun(json, *parts.run);
-    if (parts.presence != nullptr) writePresence(json, *parts.presence);
-    if (parts.advice != nullptr) writeSuggestions(json, *parts.advice);
+    for (const auto& section : parts) section->writeJson(json);
 }
 
 namespace {
@@ -408,12 +401,9 @@ std::string comparisonText(const Comparison& other, const Metric& now) {
 }
 
 std::string partsText(const ReportParts& parts) {
-    return (parts.rules == nullptr ? "" : cameraRulesText(*parts.rules)) +
-           (parts.objectives == nullptr ? "" : objectivesText(*parts.objectives)) +
-           (parts.robustness == nullptr ? "" : robustnessText(*parts.robustness)) +
-           (parts.run == nullptr ? "" : "\n" + runText(*parts.run)) +
-           (parts.presence == nullptr ? "" : "\n" + presenceText(*parts.presence)) +
-           (parts.advice == nullptr ? "" : suggestionsText(*parts.advice));
+    std::string text;
+    for (const auto& section : parts) text += section->text();
+    return text;
 }
 
 std::string coverageText(const CoverageReport& report) {
@@ -440,32 +430,6 @@ std::string coverageText(const CoverageReport& report) {
         text +=
             sensorTable(report.sensors) + cameraTable(report.sensors) + "\n" + piecesText(report);
     return text;
-}
-
-std::string aligned(const std::vector<TextRow>& rows, const std::string& sides) {
-    std::vector<std::size_t> widths;
-    const auto side = [&sides](std::size_t i) {
-        return i < sides.size() ? sides[i] : sides.back();
-    };
-    for (const TextRow& row : rows) {
-        widths.resize(std::max(widths.size(), row.size()));
-        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-    }
-    std::string text;
-    for (const TextRow& row : rows) {
-        std::string line;
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            const std::string blanks(widths[i] - row[i].size(), ' ');
-            if (i > 0) line += "  ";
-            line += side(i) == 'r' ? blanks + row[i] : row[i] + blanks;
-        }
-        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
-    }
-    return text;
-}
-
-std::string percentText(double share, int decimals) {
-    return formatFixed(100 * share, decimals) + '%';
 }
 
 }  // namespace ispace

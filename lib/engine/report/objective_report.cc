@@ -6,6 +6,8 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "report/coverage_report.h"
+#include "report/map/map_layer.h"
+#include "report/map/map_parts.h"
 
 namespace ispace {
 
@@ -63,10 +65,10 @@ std::vector<NamedFigure> namedFigures(const ObjectiveFigures& figures) {
     return all;
 }
 
-void writeObjectives(JsonWriter& json, const ObjectiveFigures& figures) {
-    if (!figures.ways.empty()) {
+void ObjectivesSection::writeJson(JsonWriter& json) const {
+    if (!figures_.ways.empty()) {
         json.key("paths").beginArray();
-        for (const LeastSeenPath& way : figures.ways) {
+        for (const LeastSeenPath& way : figures_.ways) {
             json.beginObject();
             json.key("from").value(way.of.from);
             json.key("to").value(way.of.to);
@@ -87,8 +89,8 @@ void writeObjectives(JsonWriter& json, const ObjectiveFigures& figures) {
         }
         json.endArray();
     }
-    if (!figures.localisation) return;
-    const Localisation& localisation = *figures.localisation;
+    if (!figures_.localisation) return;
+    const Localisation& localisation = *figures_.localisation;
     json.key("localisation").beginObject();
     writeFigure(json, "within", localisation.within);
     writeFigure(json, "localised", localisation.localised);
@@ -99,11 +101,96 @@ void writeObjectives(JsonWriter& json, const ObjectiveFigures& figures) {
     json.endObject();
 }
 
-std::string objectivesText(const ObjectiveFigures& figures) {
+std::string ObjectivesSection::text() const {
     std::string text;
-    for (const NamedFigure& figure : namedFigures(figures))
+    for (const NamedFigure& figure : namedFigures(figures_))
         text += figure.name + ": " + figure.finding + '\n';
     return text.empty() ? "" : '\n' + text;
+}
+
+namespace {
+
+/// Colours of unseen and seen pieces of a way, those of ways in runs (Okabe and Ito's vermilion and
+/// green).
+constexpr std::array<std::uint32_t, 2> kPieceColors = {0xD55E00, 0x00845F};
+
+Stroke pieceStroke(bool is_seen, double em) {
+    Stroke stroke{Color::rgb(kPieceColors[is_seen ? 1 : 0]), em / 5};
+    if (!is_seen) stroke.dashes = {em / 2, em / 4};
+    return stroke;
+}
+
+/// Draws the ways.
+class LeastSeenPathsLayer final : public MapLayer {
+  public:
+    explicit LeastSeenPathsLayer(const ObjectiveFigures& figures) : figures_(figures) {}
+    [[nodiscard]] std::string_view name() const override { return "ways seen least"; }
+    void draw(Picture& picture, const MapPicture& map) const override {
+        std::array<std::vector<std::vector<Point2>>, kPieceColors.size()> chains;
+        for (const LeastSeenPath& way : figures_.ways)
+            for (const LeastSeenPath::Piece& piece : way.pieces) {
+                auto& some = chains[piece.is_seen ? 1 : 0];
+                if (some.empty() || !(some.back().back() == piece.from))
+                    some.push_back({piece.from});
+                some.back().push_back(piece.to);
+            }
+        picture.pushView(map.view);
+        for (const auto& some : chains)
+            picture.lines(some, {Stroke{palette::kWhite.faded(0.8), map.em / 2.6}});
+        for (std::size_t i = 0; i < chains.size(); ++i)
+            picture.lines(chains[i], {pieceStroke(i == 1, map.em)});
+        picture.pop();
+    }
+
+    std::optional<LegendBlock> legend() const override {
+        if (figures_.ways.empty()) return std::nullopt;
+        using Sign = LegendItem::Sign;
+        LegendBlock block{"Ways that are seen least", {}};
+        block.items.push_back({Sign::Line, Color::rgb(kPieceColors[1]), {}, "seen", ""});
+        block.items.push_back(
+            {Sign::Dashes, Color::rgb(kPieceColors[0]), {}, "unseen, or in a zone", ""});
+        for (const LeastSeenPath& way : figures_.ways)
+            block.items.push_back({Sign::None,
+                                   {},
+                                   {},
+                                   way.of.from + " to " + way.of.to,
+                                   way.seen ? formatFixed(*way.seen, 2) + " m seen" : "unknown"});
+        return block;
+    }
+
+  private:
+    const ObjectiveFigures& figures_;
+};
+
+}  // namespace
+
+ObjectivesSection::ObjectivesSection(const ObjectiveFigures& figures)
+    : figures_(figures), layer_(std::make_unique<LeastSeenPathsLayer>(figures)) {}
+
+ObjectivesSection::~ObjectivesSection() = default;
+
+const MapLayer* ObjectivesSection::mapLayer() const { return layer_.get(); }
+
+PageAdditions ObjectivesSection::page(const PageSubject& subject) const {
+    PageAdditions added;
+    if (subject.of == PageSubject::Of::Site)
+        added.figures.push_back(
+            {"objectives", figures_.localisation ? "Positions" : "Ways", {PageCode{text()}}});
+    if (subject.of != PageSubject::Of::Room) return added;
+    PageTable table{
+        "ways that are seen least, and errors of positions", "ll", {"figure", "measured"}, {}};
+    for (const NamedFigure& figure : namedFigures(figures_))
+        table.rows.push_back({figure.name, figure.finding});
+    PageSection section{"objectives", "Ways and positions", {std::move(table)}};
+    if (!figures_.ways.empty()) {
+        MapOptions options;
+        options.layers = {layer_.get()};
+        section.blocks.push_back(
+            PageFigure{"Ways between zones that are seen least.",
+                       coverageMap(*subject.scene, *subject.coverage, options)});
+    }
+    added.figures.push_back(std::move(section));
+    return added;
 }
 
 }  // namespace ispace

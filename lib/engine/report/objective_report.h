@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/json_writer.h"
 #include "coverage/least_seen_path.h"
 #include "coverage/localisation.h"
+#include "report/report_section.h"
 
 namespace ispace {
 
@@ -26,10 +28,21 @@ struct NamedFigure {
 /// Returns the figures in words, those of ways first.
 std::vector<NamedFigure> namedFigures(const ObjectiveFigures& figures);
 
-/// Writes the members `paths` and `localisation` of coverageJson().
-void writeObjectives(JsonWriter& json, const ObjectiveFigures& figures);
+/// Ways that are seen least, and errors of positions: members `paths` and `localisation`, a line
+/// for each figure, and the ways on the map.
+class ObjectivesSection final : public ReportSection {
+  public:
+    explicit ObjectivesSection(const ObjectiveFigures& figures);
+    ~ObjectivesSection() override;
+    [[nodiscard]] std::string_view name() const override { return "objectives"; }
+    void writeJson(JsonWriter& json) const override;
+    [[nodiscard]] std::string text() const override;
+    [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;
+    [[nodiscard]] const MapLayer* mapLayer() const override;
 
-/// Writes a line for each figure.
-std::string objectivesText(const ObjectiveFigures& figures);
+  private:
+    const ObjectiveFigures& figures_;
+    std::unique_ptr<const MapLayer> layer_;
+};
 
 }  // namespace ispace

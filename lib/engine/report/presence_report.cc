@@ -35,27 +35,6 @@ TextRow peopleRow(const PresenceFigures& figures) {
             lengthText(figures.longest_gap)};
 }
 
-}  // namespace
-
-void writePresence(JsonWriter& json, const Presence& presence) {
-    json.key("presence").beginObject();
-    writeNumber(json, "within", kPresenceDelay);
-    json.key("people").beginArray();
-    for (const PresenceFigures& person : presence.people) writePresenceOf(json, person);
-    json.endArray();
-    json.key("all");
-    writePresenceOf(json, presence.all);
-    json.key("sensors").beginArray();
-    for (const SensorPresence& sensor : presence.sensors) {
-        json.beginObject();
-        json.key("id").value(sensor.id);
-        writeNumber(json, "share", sensor.share);
-        writeNumber(json, "marginal_share", sensor.marginal);
-        json.endObject();
-    }
-    json.endArray().endObject();
-}
-
 std::string presenceText(const Presence& presence) {
     std::vector<TextRow> people = {{"presence within " + formatDouble(kPresenceDelay) + " s", "way",
                                     "detected", "longest undetected"}};
@@ -68,6 +47,36 @@ std::string presenceText(const Presence& presence) {
         sensors.push_back(
             {"  " + printable(sensor.id), percentText(sensor.share), percentText(sensor.marginal)});
     return text + aligned(sensors, "lr");
+}
+
+}  // namespace
+
+void PresenceSection::writeJson(JsonWriter& json) const {
+    json.key("presence").beginObject();
+    writeNumber(json, "within", kPresenceDelay);
+    json.key("people").beginArray();
+    for (const PresenceFigures& person : presence_.people) writePresenceOf(json, person);
+    json.endArray();
+    json.key("all");
+    writePresenceOf(json, presence_.all);
+    json.key("sensors").beginArray();
+    for (const SensorPresence& sensor : presence_.sensors) {
+        json.beginObject();
+        json.key("id").value(sensor.id);
+        writeNumber(json, "share", sensor.share);
+        writeNumber(json, "marginal_share", sensor.marginal);
+        json.endObject();
+    }
+    json.endArray().endObject();
+}
+
+std::string PresenceSection::text() const { return '\n' + presenceText(presence_); }
+
+PageAdditions PresenceSection::page(const PageSubject& subject) const {
+    PageAdditions added;
+    if (subject.of == PageSubject::Of::Site)
+        added.figures.push_back({"presence", "Presence", {PageCode{presenceText(presence_)}}});
+    return added;
 }
 
 }  // namespace ispace

@@ -2,16 +2,25 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
-#include "base/json_writer.h"
 #include "coverage/presence.h"
+#include "report/report_section.h"
 
 namespace ispace {
 
-/// Writes the member `presence` of coverageJson().
-void writePresence(JsonWriter& json, const Presence& presence);
+/// The share of people's ways that sensors of motion detect: member `presence`, a table each of
+/// people and sensors.
+class PresenceSection final : public ReportSection {
+  public:
+    explicit PresenceSection(const Presence& presence) : presence_(presence) {}
+    [[nodiscard]] std::string_view name() const override { return "presence"; }
+    void writeJson(JsonWriter& json) const override;
+    [[nodiscard]] std::string text() const override;
+    [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;
 
-/// Writes the share of all ways, and a table each of people and sensors.
-std::string presenceText(const Presence& presence);
+  private:
+    const Presence& presence_;
+};
 
 }  // namespace ispace

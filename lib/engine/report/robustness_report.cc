@@ -105,22 +105,22 @@ void writeFailures(JsonWriter& json, const Robustness& robustness) {
 
 }  // namespace
 
-void writeRobustness(JsonWriter& json, const Robustness& robustness) {
-    if (robustness.mounting) {
+void RobustnessSection::writeJson(JsonWriter& json) const {
+    if (robustness_.mounting) {
         json.key("mounting").beginObject();
-        writeShare(json, "distance", robustness.tolerance.distance);
-        writeShare(json, "angle", robustness.tolerance.angle.degrees());
-        writeSampled(json, *robustness.mounting, robustness.requirements);
+        writeShare(json, "distance", robustness_.tolerance.distance);
+        writeShare(json, "angle", robustness_.tolerance.angle.degrees());
+        writeSampled(json, *robustness_.mounting, robustness_.requirements);
         json.endObject();
     }
-    if (robustness.failures > 0) writeFailures(json, robustness);
-    if (robustness.crowd) {
+    if (robustness_.failures > 0) writeFailures(json, robustness_);
+    if (robustness_.crowd) {
         constexpr const char* kNames[] = {"random", "scene", "run"};
-        const bool is_random = robustness.crowd_of == Robustness::CrowdOf::Random;
+        const bool is_random = robustness_.crowd_of == Robustness::CrowdOf::Random;
         json.key("crowd").beginObject();
-        json.key("of").value(kNames[static_cast<std::size_t>(robustness.crowd_of)]);
-        if (is_random) json.key("people").value(robustness.people);
-        writeSampled(json, *robustness.crowd, robustness.requirements, is_random);
+        json.key("of").value(kNames[static_cast<std::size_t>(robustness_.crowd_of)]);
+        if (is_random) json.key("people").value(robustness_.people);
+        writeSampled(json, *robustness_.crowd, robustness_.requirements, is_random);
         json.endObject();
     }
 }
@@ -208,21 +208,53 @@ std::vector<std::string> robustRequirements(const Robustness& robustness) {
     return sentences;
 }
 
-std::string robustnessText(const Robustness& robustness) {
+std::string RobustnessSection::text() const {
     std::string text;
-    if (robustness.mounting)
-        text += '\n' + mountingText(robustness) + ":\n" +
-                aligned(spreadRows(*robustness.mounting), "lr");
-    if (robustness.failures > 0)
-        text += "\nif " + failuresText(robustness.failures) + ":\n" +
-                aligned(failureRows(robustness), "lrrl");
-    if (robustness.crowd)
-        text += '\n' + crowdText(robustness) + ":\n" +
-                aligned(spreadRows(*robustness.crowd,
-                                   robustness.crowd_of == Robustness::CrowdOf::Random),
+    if (robustness_.mounting)
+        text += '\n' + mountingText(robustness_) + ":\n" +
+                aligned(spreadRows(*robustness_.mounting), "lr");
+    if (robustness_.failures > 0)
+        text += "\nif " + failuresText(robustness_.failures) + ":\n" +
+                aligned(failureRows(robustness_), "lrrl");
+    if (robustness_.crowd)
+        text += '\n' + crowdText(robustness_) + ":\n" +
+                aligned(spreadRows(*robustness_.crowd,
+                                   robustness_.crowd_of == Robustness::CrowdOf::Random),
                         "lr");
-    for (const std::string& sentence : robustRequirements(robustness)) text += sentence + '\n';
+    for (const std::string& sentence : robustRequirements(robustness_)) text += sentence + '\n';
     return text;
+}
+
+namespace {
+
+/// Makes a table of rows with their heads.
+PageTable tableOf(std::string caption, std::string sides, std::vector<TextRow> rows) {
+    PageTable table{std::move(caption), std::move(sides), std::move(rows.front()), {}};
+    table.rows.assign(std::make_move_iterator(rows.begin() + 1),
+                      std::make_move_iterator(rows.end()));
+    return table;
+}
+
+}  // namespace
+
+PageAdditions RobustnessSection::page(const PageSubject& subject) const {
+    if (subject.of == PageSubject::Of::Storey) return {};
+    PageSection section{"robustness", "Robustness", {}};
+    if (robustness_.mounting)
+        section.blocks.push_back(tableOf("sensors " + mountingText(robustness_) + ", at random",
+                                         "lr", spreadRows(*robustness_.mounting)));
+    if (robustness_.crowd)
+        section.blocks.push_back(tableOf(
+            crowdText(robustness_), "lr",
+            spreadRows(*robustness_.crowd, robustness_.crowd_of == Robustness::CrowdOf::Random)));
+    if (robustness_.failures > 0)
+        section.blocks.push_back(
+            tableOf("if " + failuresText(robustness_.failures), "lrrl", failureRows(robustness_)));
+    for (const std::string& sentence : robustRequirements(robustness_))
+        section.blocks.push_back(PageText{"Required " + sentence + "."});
+    PageAdditions added;
+    added.figures.push_back(std::move(section));
+    return added;
 }
 
 }  // namespace ispace

@@ -3,10 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/json_writer.h"
 #include "coverage/robustness.h"
+#include "report/report_section.h"
 
 namespace ispace {
 
@@ -23,11 +24,19 @@ struct Robustness {
     std::vector<FigureLoss> losses = {};
 };
 
-/// Writes the members `mounting`, `failures` and `crowd` of coverageJson().
-void writeRobustness(JsonWriter& json, const Robustness& robustness);
+/// Coverage under errors of mounting, failures and among people: members `mounting`, `failures` and
+/// `crowd`, tables of figures, and a line for each requirement.
+class RobustnessSection final : public ReportSection {
+  public:
+    explicit RobustnessSection(const Robustness& robustness) : robustness_(robustness) {}
+    [[nodiscard]] std::string_view name() const override { return "robustness"; }
+    void writeJson(JsonWriter& json) const override;
+    [[nodiscard]] std::string text() const override;
+    [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;
 
-/// Writes tables of figures, and a line for each requirement.
-std::string robustnessText(const Robustness& robustness);
+  private:
+    const Robustness& robustness_;
+};
 
 /// "mounted within 0.05 m and 3 degrees, 100 times"
 std::string mountingText(const Robustness& robustness);

@@ -9,6 +9,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "report/coverage_report.h"
+#include "report/map/map_layer.h"
 #include "report/map/map_parts.h"
 
 namespace ispace {
@@ -136,52 +137,6 @@ std::string unreachedRows(const RunCoverage& run) {
     return text;
 }
 
-}  // namespace
-
-void writeRun(JsonWriter& json, const RunCoverage& run) {
-    json.key("run").beginObject();
-    json.key("record").value(run.name);
-    writeMember(json, "begin", run.begin);
-    writeMember(json, "end", run.end);
-    json.key("members").beginArray();
-    for (const RunCoverageMetrics& member : run.members) writeMember(json, member);
-    json.endArray();
-    json.key("all");
-    writeMember(json, run.all);
-    json.key("losses").beginArray();
-    for (const TrackLoss& loss : run.losses) {
-        json.beginObject();
-        json.key("id").value(run.members[loss.member].id);
-        if (!loss.room.empty()) json.key("room").value(loss.room);
-        writeMember(json, "begin", loss.begin);
-        writeMember(json, "duration", loss.duration);
-        writeMember(json, "place", {loss.place.x, loss.place.y});
-        json.endObject();
-    }
-    json.endArray();
-    json.key("unreached").beginArray();
-    for (const UnreachedTarget& target : run.unreached) {
-        json.beginObject();
-        json.key("id").value(target.id);
-        if (!target.to.empty()) json.key("to").value(target.to);
-        if (target.at) writeMember(json, "place", {target.at->x, target.at->y});
-        writeMember(json, "first", target.first);
-        json.key("times").value(target.times);
-        json.endObject();
-    }
-    json.endArray();
-    json.key("contacts").beginArray();
-    for (const RunContact& contact : run.contacts) {
-        json.beginObject();
-        json.key("id").value(contact.id).key("other").value(contact.other);
-        writeMember(json, "place", {contact.at.x, contact.at.y});
-        writeMember(json, "first", contact.first);
-        json.key("times").value(contact.times);
-        json.endObject();
-    }
-    json.endArray().endObject();
-}
-
 std::string runText(const RunCoverage& run) {
     std::string text = "run " + printable(run.name) + ", t=" + formatFixed(run.begin, 2) + " to " +
                        formatFixed(run.end, 2) + " s: seen by so many sensors\n" +
@@ -203,6 +158,52 @@ std::string runText(const RunCoverage& run) {
     return text;
 }
 
+}  // namespace
+
+void RunSection::writeJson(JsonWriter& json) const {
+    json.key("run").beginObject();
+    json.key("record").value(run_.name);
+    writeMember(json, "begin", run_.begin);
+    writeMember(json, "end", run_.end);
+    json.key("members").beginArray();
+    for (const RunCoverageMetrics& member : run_.members) writeMember(json, member);
+    json.endArray();
+    json.key("all");
+    writeMember(json, run_.all);
+    json.key("losses").beginArray();
+    for (const TrackLoss& loss : run_.losses) {
+        json.beginObject();
+        json.key("id").value(run_.members[loss.member].id);
+        if (!loss.room.empty()) json.key("room").value(loss.room);
+        writeMember(json, "begin", loss.begin);
+        writeMember(json, "duration", loss.duration);
+        writeMember(json, "place", {loss.place.x, loss.place.y});
+        json.endObject();
+    }
+    json.endArray();
+    json.key("unreached").beginArray();
+    for (const UnreachedTarget& target : run_.unreached) {
+        json.beginObject();
+        json.key("id").value(target.id);
+        if (!target.to.empty()) json.key("to").value(target.to);
+        if (target.at) writeMember(json, "place", {target.at->x, target.at->y});
+        writeMember(json, "first", target.first);
+        json.key("times").value(target.times);
+        json.endObject();
+    }
+    json.endArray();
+    json.key("contacts").beginArray();
+    for (const RunContact& contact : run_.contacts) {
+        json.beginObject();
+        json.key("id").value(contact.id).key("other").value(contact.other);
+        writeMember(json, "place", {contact.at.x, contact.at.y});
+        writeMember(json, "first", contact.first);
+        json.key("times").value(contact.times);
+        json.endObject();
+    }
+    json.endArray().endObject();
+}
+
 namespace {
 
 /// Colours of ways seen by 0, 1, 2 and more sensors: Okabe and Ito's vermilion, orange, green, and
@@ -219,52 +220,133 @@ Stroke strokeOf(std::size_t run_class, double em) {
 
 constexpr std::size_t kMaxMarked = 50;
 
-}  // namespace
+/// Draws the ways of a run, and rings where sight was lost.
+class RunLayer final : public MapLayer {
+  public:
+    explicit RunLayer(const RunCoverage& run) : run_(run) {}
+    [[nodiscard]] std::string_view name() const override { return "ways of the run"; }
+    void draw(Picture& picture, const MapPicture& map) const override {
+        std::array<std::vector<std::vector<Point2>>, kRunColors.size()> chains;
+        const double tolerance = 0.2 / map.view.scale;
+        for (const SeenPath& way : run_.ways)
+            if (way.points.size() > 1)
+                chains[classOf(way.sensors)].push_back(thinned(way.points, tolerance));
+        picture.pushView(map.view);
+        for (const auto& some : chains)
+            picture.lines(some, {Stroke{palette::kWhite.faded(0.8), map.em / 2.6}});
+        for (std::size_t i = chains.size(); i-- > 0;)
+            picture.lines(chains[i], {strokeOf(i, map.em)});
+        picture.pop();
+        for (std::size_t i = 0; i < std::min(kMaxMarked, run_.losses.size()); ++i)
+            drawChosenRing(picture, map.view * run_.losses[i].place, 0.5 * map.em, map.em);
+    }
 
-void drawRun(Picture& picture, const MapPicture& map) {
-    const RunCoverage* run = map.options.run;
-    if (run == nullptr) return;
-    std::array<std::vector<std::vector<Point2>>, kRunColors.size()> chains;
-    const double tolerance = 0.2 / map.view.scale;
-    for (const SeenPath& way : run->ways)
-        if (way.points.size() > 1)
-            chains[classOf(way.sensors)].push_back(thinned(way.points, tolerance));
-    picture.pushView(map.view);
-    for (const auto& some : chains)
-        picture.lines(some, {Stroke{palette::kWhite.faded(0.8), map.em / 2.6}});
-    for (std::size_t i = chains.size(); i-- > 0;) picture.lines(chains[i], {strokeOf(i, map.em)});
-    picture.pop();
-    for (std::size_t i = 0; i < std::min(kMaxMarked, run->losses.size()); ++i)
-        drawChosenRing(picture, map.view * run->losses[i].place, 0.5 * map.em, map.em);
+    std::optional<LegendBlock> legend() const override {
+        using Sign = LegendItem::Sign;
+        LegendBlock block{"Ways seen by", {}, {"time", "way"}};
+        const auto share = [](const std::vector<double>& shares, std::size_t k) {
+            double sum = 0;
+            for (std::size_t i = k; i < shares.size(); ++i)
+                if (classOf(i) == k) sum += shares[i];
+            return shares.empty() ? std::string("–") : percentText(sum);
+        };
+        for (std::size_t k = 0; k < kRunColors.size(); ++k) {
+            if (k > 1 && k >= run_.all.time_shares.size()) break;
+            std::string text = k == 0 ? "no sensor" : std::to_string(k);
+            if (k > 0) text += k == 1 ? " sensor" : " sensors";
+            if (k + 1 == kRunColors.size()) text = std::to_string(k) + " and more";
+            LegendItem item{
+                k == 0 ? Sign::Dashes : Sign::Line, Color::rgb(kRunColors[k]), {}, text, ""};
+            item.value = share(run_.all.time_shares, k);
+            item.second = share(run_.all.way_shares, k);
+            block.items.push_back(std::move(item));
+        }
+        if (!run_.losses.empty())
+            block.items.push_back(
+                {Sign::Ring, {}, {}, "sight was lost", std::to_string(run_.losses.size()) + " ×"});
+        if (const auto& gap = run_.all.longest_gap)
+            block.items.push_back(
+                {Sign::None, {}, {}, "longest unseen", seconds(gap->end - gap->begin)});
+        return block;
+    }
+
+  private:
+    const RunCoverage& run_;
+};
+
+/// Tells for which share of their time movers were seen, and the longest time without sight.
+/// \param movers e.g. "robots and people"
+PageText sightInRun(const RunCoverage& run, const std::string& movers) {
+    return {"In the run of " + formatFixed(run.end - run.begin, 2) + " s " + movers +
+            " were seen for " + percentText(1 - run.all.time_shares.front()) + " of their time; " +
+            (run.all.longest_gap
+                 ? "the longest time without sight was " +
+                       formatFixed(run.all.longest_gap->end - run.all.longest_gap->begin, 2) + " s."
+                 : "sight was never lost.")};
 }
 
-LegendBlock runBlock(const RunCoverage& run) {
-    using Sign = LegendItem::Sign;
-    LegendBlock block{"Ways seen by", {}, {"time", "way"}};
-    const auto share = [](const std::vector<double>& shares, std::size_t k) {
-        double sum = 0;
-        for (std::size_t i = k; i < shares.size(); ++i)
-            if (classOf(i) == k) sum += shares[i];
-        return shares.empty() ? std::string("–") : percentText(sum);
+/// Tells of collisions and of targets that were given up; empty without any.
+std::vector<PageText> incidentsOf(const RunCoverage& run) {
+    static constexpr std::size_t kNamed = 3;
+    const auto told = [](const std::string& head, std::span<const std::string> all) {
+        std::string text = head;
+        for (std::size_t i = 0; i < std::min(kNamed, all.size()); ++i)
+            text += (i > 0 ? ", " : " ") + all[i];
+        if (all.size() > kNamed) text += " and " + std::to_string(all.size() - kNamed) + " more";
+        return PageText{text + ".", Tone::Bad};
     };
-    for (std::size_t k = 0; k < kRunColors.size(); ++k) {
-        if (k > 1 && k >= run.all.time_shares.size()) break;
-        std::string text = k == 0 ? "no sensor" : std::to_string(k);
-        if (k > 0) text += k == 1 ? " sensor" : " sensors";
-        if (k + 1 == kRunColors.size()) text = std::to_string(k) + " and more";
-        LegendItem item{
-            k == 0 ? Sign::Dashes : Sign::Line, Color::rgb(kRunColors[k]), {}, text, ""};
-        item.value = share(run.all.time_shares, k);
-        item.second = share(run.all.way_shares, k);
-        block.items.push_back(std::move(item));
+    std::vector<std::string> contacts, targets;
+    for (const RunContact& one : run.contacts) contacts.push_back(one.id + " into " + one.other);
+    for (const UnreachedTarget& one : run.unreached)
+        targets.push_back(one.id + " to " +
+                          (one.to.empty() && one.at ? pointText(*one.at) : one.to));
+    std::vector<PageText> texts;
+    if (!contacts.empty()) texts.push_back(told("Movers collided:", contacts));
+    if (!targets.empty()) texts.push_back(told("Ways were given up:", targets));
+    return texts;
+}
+
+}  // namespace
+
+RunSection::RunSection(const RunCoverage& run, bool is_of_storey)
+    : run_(run),
+      is_silent_(is_of_storey && run.members.empty()),
+      layer_(std::make_unique<RunLayer>(run)) {}
+
+RunSection::~RunSection() = default;
+
+std::string RunSection::text() const { return is_silent_ ? "" : '\n' + runText(run_); }
+
+const MapLayer* RunSection::mapLayer() const { return is_silent_ ? nullptr : layer_.get(); }
+
+PageAdditions RunSection::page(const PageSubject& subject) const {
+    using Of = PageSubject::Of;
+    static constexpr const char* kCaption =
+        "Ways of robots and people by the number of sensors that saw them.";
+    PageAdditions added;
+    if (is_silent_) return added;
+    if (subject.of == Of::Storey) {
+        added.caption = kCaption;
+        added.tables.emplace_back(PageCode{runText(run_)});
+        return added;
     }
-    if (!run.losses.empty())
-        block.items.push_back(
-            {Sign::Ring, {}, {}, "sight was lost", std::to_string(run.losses.size()) + " ×"});
-    if (const auto& gap = run.all.longest_gap)
-        block.items.push_back(
-            {Sign::None, {}, {}, "longest unseen", seconds(gap->end - gap->begin)});
-    return block;
+    added.title = "run";
+    if (!run_.all.time_shares.empty())
+        added.sight.push_back(sightInRun(
+            run_, subject.of == Of::Site ? "robots and people on storeys" : "robots and people"));
+    for (PageText& text : incidentsOf(run_)) added.sight.push_back(std::move(text));
+    if (subject.of == Of::Site) {
+        added.tables.emplace_back(PageCode{runText(run_)});
+        return added;
+    }
+    MapOptions options;
+    options.layers = {layer_.get()};
+    added.closing.push_back(
+        {"run",
+         "Recorded run",
+         {PageFigure{kCaption, coverageMap(*subject.scene, *subject.coverage, options)},
+          PageCode{runText(run_)}}});
+    return added;
 }
 
 }  // namespace ispace

@@ -23,13 +23,15 @@ RunCoverage runOf(int end) {
     return run;
 }
 
+std::string textOf(const RunCoverage& run) { return RunSection(run).text(); }
+
 TEST(RunReport, HasTextAndJson) {
     const RunCoverage run = runOf(6);
-    const std::string text = runText(run);
+    const std::string text = RunSection(run).text();
     EXPECT_NE(text.find("run drive, t=0.00 to 6.00 s"), std::string::npos) << text;
     EXPECT_NE(text.find("robot r1"), std::string::npos);
     EXPECT_NE(text.find("where sight was lost:"), std::string::npos);
-    const std::string json = coverageJson({}, {.run = &run});
+    const std::string json = coverageJson({}, {std::make_shared<RunSection>(run)});
     EXPECT_NE(
         json.find(
             R"("run":{"record":"drive","begin":0,"end":6,"members":[{"id":"r1","kind":"robot")"),
@@ -47,14 +49,14 @@ TEST(RunReport, TargetsThatWereGivenUp) {
         measureRun(sceneOf("ispace size=8,6\nrobot id=r1 at=0,0\n"), reader, {});
     ASSERT_EQ(run.unreached.size(), 3U);
     EXPECT_EQ(run.unreached[0].times, 2U);
-    const std::string text = runText(run);
+    const std::string text = RunSection(run).text();
     for (const char* row : {"to (9.00, 2.00)", "2 times", "to upper (1.00, 2.00)", "to sofa"})
         EXPECT_NE(text.find(row), std::string::npos) << row << '\n' << text;
-    const std::string json = coverageJson({}, {.run = &run});
+    const std::string json = coverageJson({}, {std::make_shared<RunSection>(run)});
     EXPECT_NE(json.find(R"("unreached":[{"id":"r1","place":[9,2],"first":1,"times":2})"),
               std::string::npos)
         << json;
-    EXPECT_EQ(runText(runOf(1)).find("given up"), std::string::npos);
+    EXPECT_EQ(textOf(runOf(1)).find("given up"), std::string::npos);
 }
 
 TEST(RunReport, Collisions) {
@@ -65,23 +67,24 @@ TEST(RunReport, Collisions) {
         measureRun(sceneOf("ispace size=8,6\nrobot id=r1 at=0,0\n"), reader, {});
     ASSERT_EQ(run.contacts.size(), 2U);
     EXPECT_EQ(run.contacts[0].at, (Point2{1, 0.5}));
-    const std::string text = runText(run);
+    const std::string text = RunSection(run).text();
     for (const char* row : {"collisions:", "r1 ran into side", "at (1.00, 0.50)", "t=1.00",
                             "2 times", "r1 ran into h1"})
         EXPECT_NE(text.find(row), std::string::npos) << row << '\n' << text;
-    const std::string json = coverageJson({}, {.run = &run});
+    const std::string json = coverageJson({}, {std::make_shared<RunSection>(run)});
     EXPECT_NE(
         json.find(R"("contacts":[{"id":"r1","other":"side","place":[1,0.5],"first":1,"times":2})"),
         std::string::npos)
         << json;
-    const std::vector<PageText> told = incidentsOf(run);
-    ASSERT_EQ(told.size(), 1U);
-    EXPECT_EQ(told.front().text, "Movers collided: r1 into side, r1 into h1.");
-    EXPECT_EQ(runText(runOf(1)).find("collisions"), std::string::npos);
+    const std::vector<PageText> told =
+        RunSection(run).page({PageSubject::Of::Site, CoverageReport()}).sight;
+    ASSERT_FALSE(told.empty());
+    EXPECT_EQ(told.back().text, "Movers collided: r1 into side, r1 into h1.");
+    EXPECT_EQ(textOf(runOf(1)).find("collisions"), std::string::npos);
 }
 
 TEST(RunReport, OfAMoment) {
-    EXPECT_NE(runText(runOf(0)).find("t=0.00 to 0.00 s"), std::string::npos);
+    EXPECT_NE(textOf(runOf(0)).find("t=0.00 to 0.00 s"), std::string::npos);
 }
 
 }  // namespace

@@ -28,9 +28,9 @@ std::string commandOf(std::string command, std::span<const Edit> edits) {
     return command + " -o changed.env";
 }
 
-void writeSuggestions(JsonWriter& json, const Advice& advice) {
+void AdviceSection::writeJson(JsonWriter& json) const {
     json.key("suggestions").beginArray();
-    for (const Suggestion& suggestion : advice.suggestions) {
+    for (const Suggestion& suggestion : advice_.suggestions) {
         json.beginObject();
         json.key("kind").value(nameOf(suggestion.kind));
         json.key("text").value(suggestion.text);
@@ -40,24 +40,67 @@ void writeSuggestions(JsonWriter& json, const Advice& advice) {
         if (suggestion.required > 0)
             json.key("required").value(roundSignificant(suggestion.required));
         if (suggestion.unmet > 0) json.key("unmet").value(roundSignificant(suggestion.unmet));
-        json.key("command").value(commandOf(advice.command, suggestion.edits));
+        json.key("command").value(commandOf(advice_.command, suggestion.edits));
         json.endObject();
     }
     json.endArray();
-    if (advice.is_cut) json.key("suggestions_complete").value(false);
+    if (advice_.is_cut) json.key("suggestions_complete").value(false);
 }
 
-std::string suggestionsText(const Advice& advice) {
+std::string AdviceSection::text() const {
     std::string text = "\nsuggestions:\n";
-    if (advice.suggestions.empty())
-        text = advice.is_cut ? "\n" : "\nno change of one sensor or piece helps\n";
-    for (const Suggestion& suggestion : advice.suggestions) {
+    if (advice_.suggestions.empty())
+        text = advice_.is_cut ? "\n" : "\nno change of one sensor or piece helps\n";
+    for (const Suggestion& suggestion : advice_.suggestions) {
         text += "  " + printable(suggestion.text) + ": " + gainText(suggestion) + '\n';
-        text += "    " + commandOf(advice.command, suggestion.edits) + '\n';
+        text += "    " + commandOf(advice_.command, suggestion.edits) + '\n';
     }
-    if (advice.is_short) text.append(kShortAdvice).append("\n");
-    if (advice.is_cut) text.append(kCutAdvice).append("\n");
+    if (advice_.is_short) text.append(kShortAdvice).append("\n");
+    if (advice_.is_cut) text.append(kCutAdvice).append("\n");
     return text;
+}
+
+namespace {
+
+/// Builds the section of suggestions.
+PageSection adviceSection(const Advice& advice) {
+    PageSection section{"advice", "Suggestions", {}};
+    if (advice.suggestions.empty() && !advice.is_cut)
+        section.blocks.push_back(PageText{"No change of one sensor or piece of furniture helps."});
+    for (const Suggestion& suggestion : advice.suggestions)
+        section.blocks.push_back(
+            PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
+    if (advice.is_short) {
+        std::string text = kShortAdvice;
+        text.front() = 'N';
+        section.blocks.push_back(PageText{text + '.'});
+    }
+    if (advice.is_cut) {
+        std::string text = kCutAdvice;
+        text.front() = 'C';
+        section.blocks.push_back(PageText{text + '.'});
+    }
+    return section;
+}
+
+/// Builds the appendix with the command of each suggestion.
+PageSection adviceCommands(const Advice& advice) {
+    PageSection section{"advice-commands", "Appendix: commands of the suggestions", {}};
+    for (const Suggestion& suggestion : advice.suggestions) {
+        section.blocks.push_back(PageText{printable(suggestion.text) + ":", Tone::Small});
+        section.blocks.push_back(PageCode{commandOf(advice.command, suggestion.edits)});
+    }
+    return section;
+}
+
+}  // namespace
+
+PageAdditions AdviceSection::page(const PageSubject& subject) const {
+    PageAdditions added;
+    if (subject.of == PageSubject::Of::Room) added.figures.push_back(adviceSection(advice_));
+    if (subject.of == PageSubject::Of::Site) added.closing.push_back(adviceSection(advice_));
+    if (!advice_.suggestions.empty()) added.appendices.push_back(adviceCommands(advice_));
+    return added;
 }
 
 }  // namespace ispace

@@ -3,10 +3,11 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "arrange/suggestion.h"
-#include "base/json_writer.h"
+#include "report/report_section.h"
 
 namespace ispace {
 
@@ -33,10 +34,17 @@ std::string commandOf(std::string command, std::span<const Edit> edits);
 /// for requirements "; 1.20 m2 less are missing" or "; meets all requirements".
 std::string gainText(const Suggestion& suggestion);
 
-/// Writes the member `suggestions` of coverageJson().
-void writeSuggestions(JsonWriter& json, const Advice& advice);
+/// Changes that help: member `suggestions`, a line with the gain and one with the command of each.
+class AdviceSection final : public ReportSection {
+  public:
+    explicit AdviceSection(const Advice& advice) : advice_(advice) {}
+    [[nodiscard]] std::string_view name() const override { return "suggestions"; }
+    void writeJson(JsonWriter& json) const override;
+    [[nodiscard]] std::string text() const override;
+    [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;
 
-/// Writes a line with its gain, and a line with its command, for each suggestion.
-std::string suggestionsText(const Advice& advice);
+  private:
+    const Advice& advice_;
+};
 
 }  // namespace ispace

@@ -397,25 +397,21 @@ void compareStoreys(SiteCoverage& coverage, const SiteCoverage& other, const std
                                      {lost_grid.sum(), lost_exact.sum()}};
 }
 
-SiteParts partsOf(const SiteRunCoverage& run) {
-    SiteParts parts;
-    parts.sum.run = &run.sum;
-    for (const RunCoverage& storey : run.storeys) parts.storeys.push_back({.run = &storey});
-    return parts;
-}
-
-ReportParts partsOfRoom(const SiteCoverage& coverage, const SiteParts& parts) {
-    ReportParts own = parts.storeys.empty() ? ReportParts() : parts.storeys.front();
-    own.advice = parts.sum.advice;
-    own.robustness = parts.sum.robustness;
-    if (!coverage.rules.empty()) own.rules = &coverage.rules.front();
+ReportParts partsOfRoom(const SiteParts& parts) {
+    ReportParts own;
+    own.reserve(parts.sum.size());
+    for (const auto& section : parts.sum) own.push_back(section);
+    if (parts.storeys.empty()) return own;
+    for (auto& section : own)
+        for (const auto& of_room : parts.storeys.front())
+            if (of_room->name() == section->name()) section = of_room;
     return own;
 }
 
 std::string siteCoverageJson(const SiteScene& building, const SiteCoverage& coverage,
                              const SiteParts& parts) {
     if (building.isRoomAlone())
-        return coverageJson(coverage.storeys.front().report, partsOfRoom(coverage, parts));
+        return coverageJson(coverage.storeys.front().report, partsOfRoom(parts));
     std::vector<ReportedRoom> rooms;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
         rooms.push_back({building.document.storeys[i].id, &coverage.storeys[i].report});
@@ -427,9 +423,8 @@ std::string siteCoverageJson(const SiteScene& building, const SiteCoverage& cove
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         json.beginObject().key("id").value(rooms[i].id).key("report");
-        ReportParts own = parts.storeys.empty() ? ReportParts() : parts.storeys[i];
-        if (!coverage.rules.empty()) own.rules = &coverage.rules[i];
-        text += json.take() + storeyJson(*rooms[i].report, own);
+        text += json.take() + storeyJson(*rooms[i].report,
+                                         parts.storeys.empty() ? ReportParts() : parts.storeys[i]);
         text.pop_back();  // its newline
         json.endObject();
     }
@@ -465,16 +460,13 @@ std::uint32_t redundancyScale(const SiteCoverage& coverage) {
 std::string siteCoverageText(const SiteScene& building, const SiteCoverage& coverage,
                              const SiteParts& parts) {
     if (building.isRoomAlone())
-        return coverageText(coverage.storeys.front().report) +
-               partsText(partsOfRoom(coverage, parts));
+        return coverageText(coverage.storeys.front().report) + partsText(partsOfRoom(parts));
     std::string text;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         text += "storey " + building.document.storeys[i].id + '\n' +
                 coverageText(coverage.storeys[i].report);
-        ReportParts own = parts.storeys.empty() ? ReportParts() : parts.storeys[i];
-        if (!coverage.rules.empty()) own.rules = &coverage.rules[i];
-        if (own.run != nullptr && own.run->members.empty()) own.run = nullptr;
-        text += partsText(own) + '\n';
+        if (!parts.storeys.empty()) text += partsText(parts.storeys[i]);
+        text += '\n';
     }
     text += aligned(storeyRows(building, coverage), "lr");
     if (coverage.comparison) text += comparisonText(*coverage.comparison, coverage.coverage);

@@ -9,13 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
 #include "coverage/requirement.h"
-#include "report/camera_rules_report.h"
 #include "report/coverage_report.h"
-#include "report/suggestion_report.h"
-#include "site/site_run_coverage.h"
 #include "site/site_scene.h"
 
 namespace ispace {
@@ -32,7 +28,6 @@ struct SiteCoverage {
     Metric coverage, free_coverage;             ///< shares; empty if that of a storey is unknown
     std::vector<double> redundancy;             ///< see CoverageReport
     std::optional<Comparison> comparison = {};  ///< with another layout, see compareStoreys()
-    std::vector<CameraRules> rules = {};        ///< by storey; empty: none
 };
 
 /// Measures the floor of all storeys, without openings in it; those with equal rooms and views
@@ -40,30 +35,6 @@ struct SiteCoverage {
 /// \param progress see measureCoverage(), for each storey
 SiteCoverage measureSite(const SiteScene& building, const CoverageOptions& options,
                          Progress* progress = nullptr);
-
-/// Measures rules of facing and of privacy in the storeys that have their doors or zones; a rule
-/// `GLOB/ZONE` or `GLOB/door:...` only in storeys with matching ids. Cameras of other storeys
-/// count, as for the floor. Returns the results by storey. Measures the building once for each
-/// density of privacy that differs from that of the coverage. \param options of the coverage
-/// \throws UsageError for a rule that no storey has, with the doors or zones of all storeys
-std::vector<CameraRules> measureSiteRules(const SiteScene& building, const SiteCoverage& coverage,
-                                          const CoverageOptions& options,
-                                          std::span<const FacingRule> facing,
-                                          std::span<const PrivacyRule> privacy);
-/// Returns the rules that a storey has, with its id before those of zones and doors, as in its
-/// scene of wholeScenes(). \throws UsageError for a rule that no storey has
-struct StoreyRules {
-    std::vector<FacingRule> facing;
-    std::vector<PrivacyRule> privacy;
-};
-StoreyRules rulesOfStorey(const SiteScene& building, const SiteCoverage& coverage,
-                          std::size_t storey, std::span<const FacingRule> facing,
-                          std::span<const PrivacyRule> privacy);
-/// Returns the floor that falls short of rules, m2: faces that are not seen, and private floor that
-/// is.
-double missingFloor(std::span<const CameraRules> rules);
-/// Returns the rules of all storeys, with the storey before each.
-std::vector<JudgedRule> judgedInSite(const SiteScene& building, std::span<const CameraRules> rules);
 
 /// Returns the rows of a table, its heads first: storeys, then the building.
 std::vector<TextRow> storeyRows(const SiteScene& building, const SiteCoverage& coverage);
@@ -86,22 +57,30 @@ Verdict checkRequirement(const Requirement& requirement, const SiteScene& buildi
 /// Compares the storeys and their sums with those of another layout of the same building.
 void compareStoreys(SiteCoverage& coverage, const SiteCoverage& other, const std::string& name);
 
-/// Parts of a report besides coverage: those of the building, and those of each storey.
+/// Sections of a report: those about all floor, and those about each storey. A section of a storey
+/// has the name of one about all floor.
 struct SiteParts {
     ReportParts sum = {};
     std::vector<ReportParts> storeys = {};  ///< empty: none
 };
-/// Returns the parts of a run, which outlives them.
-SiteParts partsOf(const SiteRunCoverage& run);
+
+/// Adds the sections of one kind, made of a result of each storey and of their sum.
+template <typename Section, typename Result>
+void addSections(SiteParts& parts, const std::vector<Result>& storeys, const Result& sum) {
+    parts.storeys.resize(storeys.size());
+    for (std::size_t i = 0; i < storeys.size(); ++i)
+        parts.storeys[i].push_back(std::make_shared<Section>(storeys[i]));
+    parts.sum.push_back(std::make_shared<Section>(sum));
+}
 
 /// Writes one JSON object and a newline, schema ispace-coverage/1 with an item of `rooms` for each
 /// storey; of a room alone coverageJson().
 std::string siteCoverageJson(const SiteScene& building, const SiteCoverage& coverage,
                              const SiteParts& parts = {});
-/// Returns the parts of a room alone, which is one storey and the sum.
-ReportParts partsOfRoom(const SiteCoverage& coverage, const SiteParts& parts);
-/// Writes the report of each storey, then a table of all, and the parts of the building; of a room
-/// alone its report.
+/// Returns the sections of a room alone: its own, and those about all floor that it lacks.
+ReportParts partsOfRoom(const SiteParts& parts);
+/// Writes the report of each storey, then a table of all, and the sections of the building; of a
+/// room alone its report.
 std::string siteCoverageText(const SiteScene& building, const SiteCoverage& coverage,
                              const SiteParts& parts = {});
 

@@ -9,12 +9,8 @@
 
 #include "report/coverage_report.h"
 #include "report/map/map.h"
-#include "report/objective_report.h"
 #include "report/page/cables.h"
 #include "report/page/installation.h"
-#include "report/presence_report.h"
-#include "report/robustness_report.h"
-#include "report/run_report.h"
 #include "site/coupling.h"
 
 namespace ispace {
@@ -28,7 +24,7 @@ std::string seenText(const Metric& coverage) {
            (share && !coverage.exact ? " (by cells)" : "") + " of the indoor floor.";
 }
 
-PageSection buildingSummary(const SitePageInput& input) {
+PageSection buildingSummary(const SitePageInput& input, std::span<const PageAdditions> additions) {
     const SiteCoverage& coverage = input.coverage;
     std::size_t sensors = 0;
     for (const std::size_t in_storey : coverage.sensors) sensors += in_storey;
@@ -39,18 +35,17 @@ PageSection buildingSummary(const SitePageInput& input) {
                  squareMetres(coverage.free_area) + " of it free, and " + std::to_string(sensors) +
                  (sensors == 1 ? " sensor." : " sensors.")});
     section.blocks.push_back(PageText{seenText(coverage.coverage)});
-    const RunCoverage* const run = input.parts.sum.run;
-    if (run != nullptr && !run->all.time_shares.empty())
-        section.blocks.push_back(sightInRun(*run, "robots and people on storeys"));
-    if (run != nullptr)
-        for (PageText& text : incidentsOf(*run)) section.blocks.push_back(std::move(text));
+    for (const PageAdditions& added : additions)
+        for (const PageText& text : added.sight) section.blocks.push_back(text);
     for (PageText& text : findingTexts(input.findings)) section.blocks.push_back(std::move(text));
     if (!input.requirements.empty())
         section.blocks.push_back(requirementsTable(input.requirements));
+    for (const PageAdditions& added : additions)
+        for (const PageText& text : added.judged) section.blocks.push_back(text);
     return section;
 }
 
-PageSection storeysSection(const SitePageInput& input) {
+PageSection storeysSection(const SitePageInput& input, std::span<const PageAdditions> additions) {
     std::vector<TextRow> rows = storeyRows(input.building, input.coverage);
     PageTable table{
         "shares of the floor that sensors see, by cells and exactly",
@@ -59,8 +54,8 @@ PageSection storeysSection(const SitePageInput& input) {
         {std::make_move_iterator(rows.begin() + 1), std::make_move_iterator(rows.end())}};
     PageSection section{"storeys", "Storeys", {}};
     section.blocks.push_back(std::move(table));
-    if (input.parts.sum.run != nullptr)
-        section.blocks.push_back(PageCode{runText(*input.parts.sum.run)});
+    for (const PageAdditions& added : additions)
+        for (const PageBlock& table : added.tables) section.blocks.push_back(table);
     return section;
 }
 
@@ -86,12 +81,18 @@ bool isEmpty(const Coverage& coverage) {
 PageSection storeySection(const SitePageInput& input, std::size_t storey) {
     const Storey& own = input.building.document.storeys[storey];
     const Coverage& coverage = input.coverage.storeys[storey];
-    const RunCoverage* run =
-        input.parts.storeys.empty() ? nullptr : input.parts.storeys[storey].run;
-    if (run != nullptr && run->members.empty()) run = nullptr;
+    static const ReportParts kNone;
+    const ReportParts& parts = input.parts.storeys.empty() ? kNone : input.parts.storeys[storey];
+    const PageSubject subject{PageSubject::Of::Storey, coverage.report,
+                              input.coverage.floors[storey].get(), &coverage};
+    const std::vector<PageAdditions> additions = additionsOf(parts, subject);
+    std::string caption;
+    for (const PageAdditions& added : additions)
+        if (!added.caption.empty()) caption = added.caption;
     MapOptions options;
     options.redundancy_scale = redundancyScale(input.coverage);
-    options.run = run;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (!additions[i].caption.empty()) options.layers.push_back(parts[i]->mapLayer());
     for (const StoreyPassage& passage : input.building.document.passages)
         if (std::find(passage.storeys.begin(), passage.storeys.end(), storey) !=
             passage.storeys.end())
@@ -101,23 +102,14 @@ PageSection storeySection(const SitePageInput& input, std::size_t storey) {
     constexpr double kUnseen = 0.5;  // of the column's width
     section.blocks.push_back(storeySummary(coverage));
     section.blocks.push_back(PageFigure{
-        run == nullptr ? "Floor by the number of sensors that see it; coordinates in metres."
-                       : "Ways of robots and people by the number of sensors that saw them.",
+        caption.empty() ? "Floor by the number of sensors that see it; coordinates in metres."
+                        : caption,
         coverageMap(*input.coverage.floors[storey], coverage, options),
-        coverage.sensors.empty() && run == nullptr ? kUnseen : 1});
+        coverage.sensors.empty() && caption.empty() ? kUnseen : 1});
     for (PageBlock& table : zoneTables(coverage.report)) section.blocks.push_back(std::move(table));
-    if (run != nullptr) section.blocks.push_back(PageCode{runText(*run)});
+    for (const PageAdditions& added : additions)
+        for (const PageBlock& table : added.tables) section.blocks.push_back(table);
     return section;
-}
-
-/// Lists the rules of cameras of all storeys.
-PageSection rulesSection(const SitePageInput& input) {
-    return {"rules",
-            "Faces and privacy",
-            {rulesTable("directions of faces" +
-                            facesJudgedAtText(input.coverage.storeys.front().report) +
-                            ", and zones that cameras must not see, by storey",
-                        judgedInSite(input.building, input.coverage.rules))}};
 }
 
 /// Adds the installation of a storey, the floor and the pictures of its sensors, and with a cover a
@@ -168,27 +160,10 @@ PageSection recordsOf(const SitePageInput& input) {
     return section;
 }
 
-/// Adds the parts that are about all storeys together.
-void addPartsOfAll(const SitePageInput& input, ReportPage& page) {
-    const auto add = [&page](const char* id, const char* title, std::string text) {
-        page.sections.push_back({id, title, {PageCode{std::move(text)}}});
-    };
-    const SiteCoverage& coverage = input.coverage;
-    if (coverage.comparison)
-        add("comparison", "Beside another layout",
-            comparisonText(*coverage.comparison, coverage.coverage));
-    const ReportParts& parts = input.parts.sum;
-    if (parts.objectives != nullptr)
-        add("objectives", parts.objectives->localisation ? "Positions" : "Ways",
-            objectivesText(*parts.objectives));
-    if (parts.presence != nullptr) add("presence", "Presence", presenceText(*parts.presence));
-    if (parts.robustness != nullptr) page.sections.push_back(robustnessSection(*parts.robustness));
-}
-
 ReportPage pageOfRoom(const SitePageInput& input) {
     CoveragePageInput page{*input.coverage.floors.front(), input.coverage.storeys.front(),
                            input.name, input.command, input.requirements};
-    page.parts = partsOfRoom(input.coverage, input.parts);
+    page.parts = partsOfRoom(input.parts);
     page.more = input.more;
     page.media = input.media;
     page.cover = input.cover;
@@ -203,19 +178,29 @@ ReportPage pageOfRoom(const SitePageInput& input) {
 
 ReportPage sitePage(const SitePageInput& input) {
     if (input.building.isRoomAlone()) return pageOfRoom(input);
+    const CoverageReport& first = input.coverage.storeys.front().report;
+    const std::vector<PageAdditions> additions =
+        additionsOf(input.parts.sum, {PageSubject::Of::Site, first});
     ReportPage page;
-    page.title = input.name + (input.name.empty() ? "" : ": ") +
-                 (input.parts.sum.run == nullptr ? "coverage" : "run");
+    page.title = input.name + (input.name.empty() ? "" : ": ") + titleOf(additions);
     page.cover = input.cover;
     if (!page.cover.title.empty()) page.title = page.cover.title;
     page.paper = input.paper;
     page.subtitle = std::to_string(input.coverage.storeys.size()) + " storeys · " +
                     squareMetres(input.coverage.indoor_area);
-    page.sections.push_back(buildingSummary(input));
-    page.sections.push_back(storeysSection(input));
+    const auto add = [&](std::vector<PageSection> PageAdditions::*const place) {
+        for (const PageAdditions& added : additions)
+            for (const PageSection& section : added.*place) page.sections.push_back(section);
+    };
+    page.sections.push_back(buildingSummary(input, additions));
+    page.sections.push_back(storeysSection(input, additions));
     for (const PageSection& section : input.more) page.sections.push_back(section);
-    addPartsOfAll(input, page);
-    if (!input.coverage.rules.empty()) page.sections.push_back(rulesSection(input));
+    if (input.coverage.comparison)
+        page.sections.push_back(
+            {"comparison",
+             "Beside another layout",
+             {PageCode{comparisonText(*input.coverage.comparison, input.coverage.coverage)}}});
+    add(&PageAdditions::figures);
     std::vector<CabledRoom> rooms;
     std::vector<PageSection> sheets;
     std::int64_t sensors = 0;
@@ -233,13 +218,11 @@ ReportPage sitePage(const SitePageInput& input) {
     if (!material.empty())
         page.sections.push_back(
             {"material", "Material", {materialTable(material, input.prices.currency)}});
-    page.sections.push_back(methodsSection(input.coverage.storeys.front().report));
+    page.sections.push_back(methodsSection(first));
     for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
-    if (input.parts.sum.advice != nullptr)
-        page.sections.push_back(adviceSection(*input.parts.sum.advice));
+    add(&PageAdditions::closing);
     const std::size_t appendix = page.sections.size();
-    if (input.parts.sum.advice != nullptr && !input.parts.sum.advice->suggestions.empty())
-        page.sections.push_back(adviceCommands(*input.parts.sum.advice));
+    add(&PageAdditions::appendices);
     page.sections.push_back(recordsOf(input));
     page.sections[appendix].begins_sheet = input.cover.isGiven();
     return typeset(std::move(page));

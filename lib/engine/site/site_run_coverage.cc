@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "site/site_run_coverage.h"
 
+#include <memory>
+
 #include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
+
+#include "report/run_report.h"
 
 namespace ispace {
 
@@ -71,6 +75,14 @@ RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys, std::span<const
         [](const TrackLoss& a, const TrackLoss& b) { return a.duration > b.duration; });
     std::stable_sort(sum.contacts.begin(), sum.contacts.end(), earlier);
     return sum;
+}
+
+void addRun(SiteParts& parts, const SiteScene& building, const SiteRunCoverage& run) {
+    parts.storeys.resize(run.storeys.size());
+    for (std::size_t i = 0; i < run.storeys.size(); ++i)
+        parts.storeys[i].push_back(
+            std::make_shared<RunSection>(run.storeys[i], !building.isRoomAlone()));
+    parts.sum.push_back(std::make_shared<RunSection>(run.sum));
 }
 
 }  // namespace ispace

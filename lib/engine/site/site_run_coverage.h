@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "coverage/run_coverage.h"
+#include "site/site_coverage.h"
 
 namespace ispace {
 
@@ -19,5 +20,8 @@ struct SiteRunCoverage {
 /// stairs, where no sensors stand, is left out. The longest unseen interval is one on a storey.
 /// Ways stay with the storeys. \param ids of the storeys
 RunCoverage sumOverStoreys(std::span<const RunCoverage> storeys, std::span<const std::string> ids);
+
+/// Adds the sections of a run, which outlives them. \param building whose run it is
+void addRun(SiteParts& parts, const SiteScene& building, const SiteRunCoverage& run);
 
 }  // namespace ispace

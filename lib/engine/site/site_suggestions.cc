@@ -195,8 +195,8 @@ std::vector<Suggestion> suggestForSite(const SiteScene& building, const SiteCove
 }
 
 Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
-                 const SuggestOptions& options, const DeviceCatalogue& devices,
-                 Progress& progress) {
+                 std::span<const CameraRules> rules, const SuggestOptions& options,
+                 const DeviceCatalogue& devices, Progress& progress) {
     Advice advice;
     double missing = 0;
     if (building.isRoomAlone()) {
@@ -208,7 +208,7 @@ Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
         SiteScene equipped = building;
         equipped.devices = devices;
         advice.suggestions = suggestForSite(equipped, coverage, options, progress);
-        missing = missingFloor(coverage.rules);
+        missing = missingFloor(rules);
     }
     advice.is_short =
         missing > 0 && (advice.suggestions.empty() ||

@@ -9,6 +9,7 @@
 #include "arrange/suggestion.h"
 #include "report/suggestion_report.h"
 #include "site/site_coverage.h"
+#include "site/site_rules.h"
 #include "site/site_scene.h"
 
 namespace ispace {
@@ -42,8 +43,10 @@ std::vector<Suggestion> suggestForSite(const SiteScene& building, const SiteCove
                                        const SuggestOptions& options, Progress& progress);
 
 /// Finds suggestForSite(), of a room alone suggestChanges(), and whether they fall short of the
-/// rules, of a room alone also of the requirements. \param devices that may stand in for sensors
+/// rules, of a room alone also of the requirements. \param rules measured, by storey
+/// \param devices that may stand in for sensors
 Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
-                 const SuggestOptions& options, const DeviceCatalogue& devices, Progress& progress);
+                 std::span<const CameraRules> rules, const SuggestOptions& options,
+                 const DeviceCatalogue& devices, Progress& progress);
 
 }  // namespace ispace

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "drawing/drawing.h"
+#include "report/map/map_layer.h"
 #include "report/map/map_parts.h"
 
 namespace ispace {
@@ -185,12 +186,11 @@ Picture coverageMap(const Scene& scene, const Coverage& coverage, const MapOptio
     picture.pushLayer("places tried");
     drawTrace(picture, map, frame);
     picture.pop();
-    picture.pushLayer("ways of the run");
-    drawRun(picture, map);
-    picture.pop();
-    picture.pushLayer("ways seen least");
-    drawLeastSeenPaths(picture, map);
-    picture.pop();
+    for (const MapLayer* const layer : options.layers) {
+        picture.pushLayer(layer->name());
+        layer->draw(picture, map);
+        picture.pop();
+    }
     drawMarks(picture, map, frame);
     picture.pushLayer("frame");
     drawHead(picture, map, page);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/engine/report/map: maps of coverage and runs, with their legends.
+// lib/engine/report/map: maps of coverage, with their legends.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 #include "arrange/tried_pose.h"
 #include "coverage/coverage.h"
-#include "coverage/run_coverage.h"
 #include "drawing/drawing.h"
-#include "report/objective_report.h"
 
 namespace ispace {
+
+class MapLayer;
 
 /// Meaning of the colour of covered floor.
 enum class MapColor {
@@ -48,11 +48,8 @@ struct MapOptions {
     std::uint32_t redundancy_scale = 0;
     /// Poses that a search tried: positions coloured by the best value there, below the sensors.
     std::vector<TriedPose> trace = {};
-    /// Coverage of a recorded run: ways coloured by the number of sensors that saw them, and rings
-    /// where sight was lost; null: no run. It outlives the options.
-    const RunCoverage* run = nullptr;
-    /// Ways of intruders to draw; null: none. It outlives the options.
-    const ObjectiveFigures* objectives = nullptr;
+    /// What sections of the report draw on the plan, in this order; they outlive the options.
+    std::vector<const MapLayer*> layers = {};
     std::vector<MapPassage> passages = {};
 };
 

@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "report/coverage_report.h"
+#include "report/map/map_layer.h"
 #include "report/map/map_parts.h"
 
 namespace ispace {
@@ -376,10 +377,8 @@ std::vector<LegendBlock> legendBlocks(const MapPicture& map) {
         blocks.push_back(shadesBlock(report, map.options.redundancy_scale));
     blocks.push_back(sensorsBlock(map));
     if (!map.options.trace.empty()) blocks.push_back(triedBlock(map.options.trace));
-    if (map.options.run != nullptr) blocks.push_back(runBlock(*map.options.run));
-    if (const ObjectiveFigures* figures = map.options.objectives;
-        figures != nullptr && !figures->ways.empty())
-        blocks.push_back(leastSeenPathsBlock(*figures));
+    for (const MapLayer* const layer : map.options.layers)
+        if (std::optional<LegendBlock> block = layer->legend()) blocks.push_back(*std::move(block));
     if (markedSpots(map) > 0) blocks.push_back(spotsBlock(map));
     if (!report.zones.empty()) blocks.push_back(zonesBlock(report, map.terse));
     if (!map.terse) blocks.push_back(planBlock(contents, map.coverage.target.height));

@@ -207,19 +207,6 @@ struct LegendBlock {
     std::array<std::string, 2> columns = {};  ///< heads of value and second, or empty
 };
 
-// Recorded runs (run_report.cc).
-
-/// Draws the ways of a run on top of the plan, below the sensors' marks.
-void drawRun(Picture& picture, const MapPicture& map);
-LegendBlock runBlock(const RunCoverage& run);
-
-// Ways of intruders (map_objectives.cc).
-
-/// Draws the ways that are seen least on top of the plan, below the sensors' marks.
-void drawLeastSeenPaths(Picture& picture, const MapPicture& map);
-/// \pre there are ways
-LegendBlock leastSeenPathsBlock(const ObjectiveFigures& figures);
-
 std::vector<LegendBlock> legendBlocks(const MapPicture& map);
 /// Returns the main metrics, the most important first, for the subtitle.
 std::vector<std::string> mainMetrics(const MapPicture& map);

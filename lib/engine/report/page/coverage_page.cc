@@ -99,6 +99,23 @@ std::string facesJudgedAtText(const CoverageReport& report) {
     return report.plane > 0 ? judgedAtText(report) : judgedAtText(report) + ", judged on the floor";
 }
 
+std::string outcomeText(bool is_met, const std::string& finding) {
+    return std::string(is_met ? "met" : "not met") + (finding.empty() ? "." : "; " + finding + ".");
+}
+
+std::vector<PageAdditions> additionsOf(const ReportParts& parts, const PageSubject& subject) {
+    std::vector<PageAdditions> additions;
+    additions.reserve(parts.size());
+    for (const auto& section : parts) additions.push_back(section->page(subject));
+    return additions;
+}
+
+std::string titleOf(std::span<const PageAdditions> additions) {
+    for (const PageAdditions& added : additions)
+        if (!added.title.empty()) return added.title;
+    return "coverage";
+}
+
 PageText sightText(const CoverageReport& report, std::size_t sensors) {
     std::string seen = "The sensors see " + shareText(report.coverage) + " of the indoor floor" +
                        judgedAtText(report);
@@ -114,11 +131,7 @@ PageText sightText(const CoverageReport& report, std::size_t sensors) {
 
 namespace {
 
-std::string outcomeText(bool is_met, const std::string& finding) {
-    return std::string(is_met ? "met" : "not met") + (finding.empty() ? "." : "; " + finding + ".");
-}
-
-PageSection summaryOf(const CoveragePageInput& input) {
+PageSection summaryOf(const CoveragePageInput& input, std::span<const PageAdditions> additions) {
     const CoverageReport& report = input.coverage.report;
     PageSection section{"summary", "Summary", {}};
     section.blocks.push_back(PageText{"The room has " + squareMetres(report.indoor_area) +
@@ -127,24 +140,15 @@ PageSection summaryOf(const CoveragePageInput& input) {
                                       " m, and " + sensorsText(input.scene) + "."});
     if (!input.scene.sensors.empty())
         section.blocks.push_back(sightText(report, input.scene.sensors.size()));
-    if (input.parts.run != nullptr && !input.parts.run->all.time_shares.empty())
-        section.blocks.push_back(sightInRun(*input.parts.run, "robots and people"));
-    if (input.parts.run != nullptr)
-        for (PageText& text : incidentsOf(*input.parts.run))
-            section.blocks.push_back(std::move(text));
+    for (const PageAdditions& added : additions)
+        for (const PageText& text : added.sight) section.blocks.push_back(text);
     for (PageText& text : findingTexts(input.findings)) section.blocks.push_back(std::move(text));
-    std::vector<JudgedRule> rules;
-    if (input.parts.rules != nullptr) rules = judgedRules(*input.parts.rules);
-    std::erase_if(rules, [](const JudgedRule& rule) { return !rule.is_required; });
     for (const JudgedRequirement& one : input.requirements)
         section.blocks.push_back(PageText{
             "Required are " + one.requirement + ": " + outcomeText(one.is_met, one.finding),
             one.is_met ? Tone::Good : Tone::Bad});
-    for (const JudgedRule& one : rules)
-        section.blocks.push_back(PageText{
-            "Required: " + (one.plain.empty() ? one.rule : one.plain + facesJudgedAtText(report)) +
-                ": " + outcomeText(one.is_met, one.finding),
-            one.is_met ? Tone::Good : Tone::Bad});
+    for (const PageAdditions& added : additions)
+        for (const PageText& text : added.judged) section.blocks.push_back(text);
     return section;
 }
 
@@ -300,124 +304,6 @@ std::vector<PageSection> addInstallation(const CoveragePageInput& input, ReportP
 
 }  // namespace
 
-PageSection adviceSection(const Advice& advice) {
-    PageSection section{"advice", "Suggestions", {}};
-    if (advice.suggestions.empty() && !advice.is_cut)
-        section.blocks.push_back(PageText{"No change of one sensor or piece of furniture helps."});
-    for (const Suggestion& suggestion : advice.suggestions)
-        section.blocks.push_back(
-            PageText{printable(suggestion.text) + ": " + gainText(suggestion) + "."});
-    if (advice.is_short) {
-        std::string text = kShortAdvice;
-        text.front() = 'N';
-        section.blocks.push_back(PageText{text + '.'});
-    }
-    if (advice.is_cut) {
-        std::string text = kCutAdvice;
-        text.front() = 'C';
-        section.blocks.push_back(PageText{text + '.'});
-    }
-    return section;
-}
-
-PageSection adviceCommands(const Advice& advice) {
-    PageSection section{"advice-commands", "Appendix: commands of the suggestions", {}};
-    for (const Suggestion& suggestion : advice.suggestions) {
-        section.blocks.push_back(PageText{printable(suggestion.text) + ":", Tone::Small});
-        section.blocks.push_back(PageCode{commandOf(advice.command, suggestion.edits)});
-    }
-    return section;
-}
-
-namespace {
-
-/// Makes a table of rows with their heads.
-PageTable tableOf(std::string caption, std::string sides, std::vector<TextRow> rows) {
-    PageTable table{std::move(caption), std::move(sides), std::move(rows.front()), {}};
-    table.rows.assign(std::make_move_iterator(rows.begin() + 1),
-                      std::make_move_iterator(rows.end()));
-    return table;
-}
-
-}  // namespace
-
-PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules) {
-    PageTable table{std::move(caption), "lll", {"rule", "result", "measured"}, {}};
-    for (const JudgedRule& rule : rules) {
-        table.rows.push_back({rule.plain.empty() ? rule.rule : rule.plain,
-                              !rule.is_required ? "-"
-                              : rule.is_met     ? "met"
-                                                : "not met",
-                              rule.finding});
-        table.tones.push_back(!rule.is_required ? Tone::Plain
-                              : rule.is_met     ? Tone::Good
-                                                : Tone::Bad);
-    }
-    return table;
-}
-
-namespace {
-
-void addCameraRules(const CoveragePageInput& input, ReportPage& page) {
-    if (input.parts.rules == nullptr) return;
-    page.sections.push_back(
-        {"rules",
-         "Faces and privacy",
-         {rulesTable("directions of faces" + facesJudgedAtText(input.coverage.report) +
-                         ", and zones that cameras must not see",
-                     judgedRules(*input.parts.rules))}});
-}
-
-void addObjectives(const CoveragePageInput& input, ReportPage& page) {
-    if (input.parts.objectives == nullptr) return;
-    PageTable table{
-        "ways that are seen least, and errors of positions", "ll", {"figure", "measured"}, {}};
-    for (const NamedFigure& figure : namedFigures(*input.parts.objectives))
-        table.rows.push_back({figure.name, figure.finding});
-    PageSection section{"objectives", "Ways and positions", {std::move(table)}};
-    if (!input.parts.objectives->ways.empty()) {
-        MapOptions options;
-        options.objectives = input.parts.objectives;
-        section.blocks.push_back(PageFigure{"Ways between zones that are seen least.",
-                                            coverageMap(input.scene, input.coverage, options)});
-    }
-    page.sections.push_back(std::move(section));
-}
-
-}  // namespace
-
-PageSection robustnessSection(const Robustness& robustness) {
-    PageSection section{"robustness", "Robustness", {}};
-    if (robustness.mounting)
-        section.blocks.push_back(tableOf("sensors " + mountingText(robustness) + ", at random",
-                                         "lr", spreadRows(*robustness.mounting)));
-    if (robustness.crowd)
-        section.blocks.push_back(tableOf(
-            crowdText(robustness), "lr",
-            spreadRows(*robustness.crowd, robustness.crowd_of == Robustness::CrowdOf::Random)));
-    if (robustness.failures > 0)
-        section.blocks.push_back(
-            tableOf("if " + failuresText(robustness.failures), "lrrl", failureRows(robustness)));
-    for (const std::string& sentence : robustRequirements(robustness))
-        section.blocks.push_back(PageText{"Required " + sentence + "."});
-    return section;
-}
-
-namespace {
-
-void addRun(const CoveragePageInput& input, ReportPage& page) {
-    MapOptions options;
-    options.run = input.parts.run;
-    page.sections.push_back(
-        {"run",
-         "Recorded run",
-         {PageFigure{"Ways of robots and people by the number of sensors that saw them.",
-                     coverageMap(input.scene, input.coverage, options)},
-          PageCode{runText(*input.parts.run)}}});
-}
-
-}  // namespace
-
 PageSection methodsSection(const CoverageReport& report) {
     PageSection section{"methods", "Methods and limits", {}};
     const auto add = [&](std::string text) { section.blocks.push_back(PageText{std::move(text)}); };
@@ -453,15 +339,6 @@ std::string layoutText(const Scene& scene) {
     return writeRecordText(layout);
 }
 
-PageText sightInRun(const RunCoverage& run, const std::string& movers) {
-    return {"In the run of " + formatFixed(run.end - run.begin, 2) + " s " + movers +
-            " were seen for " + percentText(1 - run.all.time_shares.front()) + " of their time; " +
-            (run.all.longest_gap
-                 ? "the longest time without sight was " +
-                       formatFixed(run.all.longest_gap->end - run.all.longest_gap->begin, 2) + " s."
-                 : "sight was never lost.")};
-}
-
 std::vector<PageBlock> zoneTables(const CoverageReport& report) {
     std::vector<PageBlock> tables;
     if (!report.zones.empty()) tables.emplace_back(zonesOfReport(report));
@@ -486,26 +363,6 @@ PageSection recordsOf(const CoveragePageInput& input) {
 
 }  // namespace
 
-std::vector<PageText> incidentsOf(const RunCoverage& run) {
-    static constexpr std::size_t kNamed = 3;
-    const auto told = [](const std::string& head, std::span<const std::string> all) {
-        std::string text = head;
-        for (std::size_t i = 0; i < std::min(kNamed, all.size()); ++i)
-            text += (i > 0 ? ", " : " ") + all[i];
-        if (all.size() > kNamed) text += " and " + std::to_string(all.size() - kNamed) + " more";
-        return PageText{text + ".", Tone::Bad};
-    };
-    std::vector<std::string> contacts, targets;
-    for (const RunContact& one : run.contacts) contacts.push_back(one.id + " into " + one.other);
-    for (const UnreachedTarget& one : run.unreached)
-        targets.push_back(one.id + " to " +
-                          (one.to.empty() && one.at ? pointText(*one.at) : one.to));
-    std::vector<PageText> texts;
-    if (!contacts.empty()) texts.push_back(told("Movers collided:", contacts));
-    if (!targets.empty()) texts.push_back(told("Ways were given up:", targets));
-    return texts;
-}
-
 PageTable requirementsTable(std::span<const JudgedRequirement> requirements) {
     PageTable table{"each requirement with its measurement, and the margin in points of a per cent",
                     "llrl",
@@ -521,30 +378,31 @@ PageTable requirementsTable(std::span<const JudgedRequirement> requirements) {
 
 ReportPage coveragePage(const CoveragePageInput& input) {
     ReportPage page;
-    const std::string_view subject = input.parts.run == nullptr ? "coverage" : "run";
-    page.title = input.name + (input.name.empty() ? "" : ": ") + std::string(subject);
+    const PageSubject subject{PageSubject::Of::Room, input.coverage.report, &input.scene,
+                              &input.coverage};
+    const std::vector<PageAdditions> additions = additionsOf(input.parts, subject);
+    page.title = input.name + (input.name.empty() ? "" : ": ") + titleOf(additions);
     if (!input.cover.title.empty()) page.title = input.cover.title;
     page.cover = input.cover;
     page.paper = input.paper;
     page.subtitle = sensorsText(input.scene) + " · " +
                     squareMetres(input.coverage.report.indoor_area) + " · " +
                     shareText(input.coverage.report.coverage);
-    page.sections.push_back(summaryOf(input));
+    const auto add = [&](std::vector<PageSection> PageAdditions::*const place) {
+        for (const PageAdditions& added : additions)
+            for (const PageSection& section : added.*place) page.sections.push_back(section);
+    };
+    page.sections.push_back(summaryOf(input, additions));
     page.sections.push_back(mapOf(input));
     for (const PageSection& section : input.more) page.sections.push_back(section);
     addRequirements(input, page);
-    addCameraRules(input, page);
-    addObjectives(input, page);
-    if (input.parts.robustness != nullptr)
-        page.sections.push_back(robustnessSection(*input.parts.robustness));
-    if (input.parts.advice != nullptr) page.sections.push_back(adviceSection(*input.parts.advice));
+    add(&PageAdditions::figures);
     std::vector<PageSection> sheets = addInstallation(input, page);
-    if (input.parts.run != nullptr) addRun(input, page);
+    add(&PageAdditions::closing);
     page.sections.push_back(methodsSection(input.coverage.report));
     for (PageSection& sheet : sheets) page.sections.push_back(std::move(sheet));
     const std::size_t appendix = page.sections.size();
-    if (input.parts.advice != nullptr && !input.parts.advice->suggestions.empty())
-        page.sections.push_back(adviceCommands(*input.parts.advice));
+    add(&PageAdditions::appendices);
     page.sections.push_back(recordsOf(input));
     page.sections[appendix].begins_sheet = input.cover.isGiven();
     return typeset(std::move(page));

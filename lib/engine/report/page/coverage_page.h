@@ -41,6 +41,14 @@ struct CoveragePageInput {
     Progress* progress = nullptr;           ///< of the pictures; null: silent
 };
 
+/// Returns what the sections add to the page, in their order.
+std::vector<PageAdditions> additionsOf(const ReportParts& parts, const PageSubject& subject);
+/// Returns the word for the page in its title: that of a section, or "coverage".
+std::string titleOf(std::span<const PageAdditions> additions);
+
+/// Returns "met; 87.20% of 4.00 m2 is seen." of a requirement.
+std::string outcomeText(bool is_met, const std::string& finding);
+
 /// Returns " with 250 pixels a metre or more (identify), 1.60 m above the floor" of what was asked
 /// for; "" for any sight of the floor itself.
 std::string judgedAtText(const CoverageReport& report);
@@ -52,22 +60,14 @@ std::string facesJudgedAtText(const CoverageReport& report);
 /// \param sensors number of those that see the floor
 PageText sightText(const CoverageReport& report, std::size_t sensors);
 
-/// Tells of collisions and of targets that were given up; empty without any.
-std::vector<PageText> incidentsOf(const RunCoverage& run);
-
 /// Tells of findings about sensors, as messages do.
 std::vector<PageText> findingTexts(const std::vector<Diagnostic>& findings);
 
-/// Tells for which share of their time movers were seen, and the longest time without sight.
-/// \param movers e.g. "robots and people"
-PageText sightInRun(const RunCoverage& run, const std::string& movers);
 /// Builds the tables of zones and of the densities of cameras; empty without either.
 std::vector<PageBlock> zoneTables(const CoverageReport& report);
 /// Builds the table of the floor that each sensor sees, sees alone, and shares with others.
 /// \param scene whose floor is measured
 PageTable sensorsTable(const Scene& scene, const Coverage& coverage);
-/// Builds the section on errors of mounting, failures and crowds.
-PageSection robustnessSection(const Robustness& robustness);
 /// Builds the section on methods and their limits.
 PageSection methodsSection(const CoverageReport& report);
 /// Returns the records of placed sensors, robots and people as text.
@@ -75,14 +75,6 @@ std::string layoutText(const Scene& scene);
 
 /// Builds the table of requirements, with margins in percentage points.
 PageTable requirementsTable(std::span<const JudgedRequirement> requirements);
-
-/// Builds the table of rules of cameras.
-PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules);
-
-/// Builds the section of suggestions.
-PageSection adviceSection(const Advice& advice);
-/// Builds the appendix with the command of each suggestion; without blocks if there are none.
-PageSection adviceCommands(const Advice& advice);
 
 /// Builds the report of a layout: summary, map, requirements, zones, suggestions, the sheet of its
 /// installer, pictures, material, methods; commands and records stand in appendices. With a cover

@@ -12,7 +12,7 @@
 #include "base/number.h"
 #include "drawing/drawing.h"
 #include "geom/pose.h"
-#include "report/coverage_report.h"
+#include "report/text_table.h"
 
 namespace ispace {
 

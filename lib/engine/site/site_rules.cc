@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rules of cameras of building_coverage.h.
+#include "site/site_rules.h"
+
 #include <cstddef>
 #include <functional>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "base/error.h"
 #include "base/glob.h"
-#include "coverage/camera_rules.h"
 #include "env/zone.h"
-#include "site/site_coverage.h"
+#include "report/page/coverage_page.h"
 
 namespace ispace {
 
@@ -180,6 +181,41 @@ std::vector<JudgedRule> judgedInSite(const SiteScene& building,
             all.push_back(std::move(rule));
         }
     return all;
+}
+
+namespace {
+
+/// The rules of all storeys on one page; each storey's report has those of its own.
+class SiteRulesSection final : public ReportSection {
+  public:
+    explicit SiteRulesSection(std::vector<JudgedRule> rules) : rules_(std::move(rules)) {}
+    [[nodiscard]] std::string_view name() const override { return "rules"; }
+    void writeJson(JsonWriter& /*json*/) const override {}
+    [[nodiscard]] std::string text() const override { return ""; }
+    [[nodiscard]] PageAdditions page(const PageSubject& subject) const override {
+        PageAdditions added;
+        added.figures.push_back(
+            {"rules",
+             "Faces and privacy",
+             {rulesTable("directions of faces" + facesJudgedAtText(subject.report) +
+                             ", and zones that cameras must not see, by storey",
+                         rules_)}});
+        return added;
+    }
+
+  private:
+    std::vector<JudgedRule> rules_;
+};
+
+}  // namespace
+
+void addRules(SiteParts& parts, const SiteScene& building, const SiteCoverage& coverage,
+              const std::vector<CameraRules>& rules) {
+    if (rules.empty()) return;
+    parts.storeys.resize(coverage.storeys.size());
+    for (std::size_t i = 0; i < rules.size(); ++i)
+        parts.storeys[i].push_back(std::make_shared<RulesSection>(rules[i]));
+    parts.sum.push_back(std::make_shared<SiteRulesSection>(judgedInSite(building, rules)));
 }
 
 }  // namespace ispace

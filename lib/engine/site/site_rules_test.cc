@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "site/site_coverage.h"
+#include "site/site_rules.h"
 
 namespace ispace {
 namespace {
