@@ -22,12 +22,14 @@ const Extensions& extensions() {
         ISPACE_EXPECT
         ISPACE_GAZEBO
         ISPACE_HEADS
+        ISPACE_IFC
         ISPACE_JUDGE
         ISPACE_LEARNING
         ISPACE_LEDS
         ISPACE_LOCKS
         ISPACE_MAPS
         ISPACE_MEMORY
+        ISPACE_MESHES
         ISPACE_NAVIGATION
         ISPACE_NODES
         ISPACE_POSTURES

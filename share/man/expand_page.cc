@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "cli/run_tool.h"
+#include "extensions.h"
 #include "io/exporters.h"
 #include "record/schema.h"
 #include "scene/placement_schemas.h"
@@ -36,6 +37,7 @@ int main(int argc, char** argv) {
     return ispace::runTool("expand_page", [&] {
         if (argc != 3) throw ispace::UsageError("wanted a template and a page");
         std::string page = ispace::expandManual(ispace::readAll(argv[1]), ispace::sceneSchemas());
+        static_cast<void>(ispace::extensions());  // add formats, after the records of the core
         if (const std::size_t at = page.find(kFormatsMark); at != std::string::npos)
             page.replace(at, kFormatsMark.size(), formatsText());
         if (const std::size_t at = page.find(kBuildingMark); at != std::string::npos) {

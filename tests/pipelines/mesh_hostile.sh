@@ -222,7 +222,7 @@ import os, signal, socket, subprocess, sys
 ours, theirs = socket.socketpair()
 size = os.path.getsize('slow.obj')
 with open('slow.obj') as mesh:
-    reader = subprocess.Popen([sys.argv[1], '.obj', 'auto', 'whole', str(os.getpid()), str(size),
+    reader = subprocess.Popen([sys.argv[1], '.obj', 'auto', str(os.getpid()), str(size),
                                str(1 << 30), '1', '1000000', '0'], stdin=mesh, stdout=theirs)
 status = reader.wait(timeout=100)
 assert status == -signal.SIGXCPU, status

@@ -41,7 +41,7 @@ violations() {
         in_test = FILENAME ~ /_test\.cc$/
         # Separate programs and modules, which no tool links. So are sources that include the classes of ARIA, which
         # print, exit and read the environment.
-        is_apart = place ~ /^lib\/((base|io\/mesh|raster)\/module|client\/sim_aria)\//
+        is_apart = place ~ /^lib\/((base|raster)\/module|client\/sim_aria)\//
         is_fuzz = place ~ /^lib\/extensions\/[a-z_]+\/fuzz\//
         if (in_lib && !(folder in known)) report("folder lib/" folder " has no place in the order")
     }

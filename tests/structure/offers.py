@@ -36,8 +36,12 @@ for name, rows in offers.items():
             about = said("arrange", "-", "--objective", offer, text="")
             if f"`{offer}` is not coverage" in about:
                 faults.append(f"{name} has no objective {offer}: {about}")
+        elif owner == "export":
+            if f"`{offer}` is none of" in said("envc", "-", "--to", offer, text=""):
+                faults.append(f"{name} writes no {offer}")
         elif owner == "format":
-            read = any(f'importer<' in source.read_text() for source in (extensions / name).glob("*.cc"))
+            read = any("addImporters(" in text
+                       for text in (source.read_text() for source in (extensions / name).glob("*.cc")))
             if not read:
                 faults.append(f"{name} reads no format, so not {offer}")
         elif offer not in known[owner] and f"the extension {name}, which" not in said(owner, offer):

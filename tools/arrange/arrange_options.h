@@ -11,8 +11,8 @@
 #include "cli/batch.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
-#include "cli/option_group.h"
 #include "cli/objective_extension.h"
+#include "cli/option_group.h"
 #include "cli/presence_paths.h"
 #include "cli/report_options.h"
 

@@ -75,7 +75,7 @@ double heightFrom(const std::string& text) {
 void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to) {
     line.choice("--to", to, formatNames(false),
                 "format of the product (default: suffix of FILE, else glb, or svg with --slice)",
-                Enters::History);
+                Enters::History, missingExporter);
     const auto take_slice = [&options](const std::string& text) {
         options.slice = heightFrom(text);
     };
@@ -277,6 +277,11 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
 
 /// Returns the first format with the suffix: .yaml is a map of a slice, and records of a room.
 const ExportFormat* productFormat(const std::string& to, const EnvcOptions& options) {
+    const std::string own_suffix = suffixOf(options.common.output);
+    const std::string extension(to.empty() ? missingExporter(own_suffix) : "");
+    if (!extension.empty())
+        throw UsageError(options.common.output + ": `." + own_suffix +
+                         "` belongs to the extension " + extension + ", which this build lacks");
     const std::vector<std::string> names = formatNames(options.slice.has_value());
     std::vector<SuffixOf> suffixes;
     for (const std::string& name : names) {
@@ -296,6 +301,7 @@ const ExportFormat* productFormat(const std::string& to, const EnvcOptions& opti
 }  // namespace
 
 EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
+    ToolExtensions tool_extensions(extensions().options(), "envc");  // these add formats
     EnvcOptions options;
     std::string to;
     bool closed = false;
@@ -317,7 +323,6 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addStoreyOption(line, options.rules,
                     "of IFC also by number, from 1 for the lowest; default: all storeys");
     line.built(extensions().names());
-    ToolExtensions tool_extensions(extensions().options(), "envc");
     tool_extensions.declare(line);
     addSceneRules(line, options.rules);
     addCommonOptions(line, options.common, "write the product there (default: stdout)");

@@ -21,6 +21,7 @@
 #include "env/zone.h"
 #include "io/exporters.h"
 #include "scene/placement_schemas.h"
+#include "site/building_imports.h"
 #include "site/chosen_storeys.h"
 #include "site/site_edit.h"
 #include "site/site_scene.h"
@@ -241,7 +242,8 @@ bool readBuilding(const EnvcOptions& options, const std::vector<RawInput>& input
         choice.isEmpty() &&
         (request.import.slice_walls || !request.import.inside.empty() || options.list_rooms);
     const auto is_whole = [&](const RawInput& input) {
-        return mayHoldStoreys(input.bytes, choice) && !(names_storey && isIfc(input.bytes));
+        return mayHoldStoreys(input.bytes, choice) &&
+               !(names_storey && buildingImporter(input.bytes) != nullptr);
     };
     const auto found = std::find_if(raw.begin(), raw.end(), is_whole);
     if (found == raw.end()) return false;

@@ -420,10 +420,15 @@ void CommandLine::duration(const std::string& names, double& variable, double lo
 }
 
 void CommandLine::choice(const std::string& names, std::string& variable,
-                         std::vector<std::string> words, const std::string& help, Enters enters) {
+                         std::vector<std::string> words, const std::string& help, Enters enters,
+                         std::string_view (*missing)(std::string_view word)) {
     std::string list;
     for (const std::string& word : words) list += (list.empty() ? "" : "|") + word;
-    const auto take = [&variable, words = std::move(words), list](const std::string& s) {
+    const auto take = [&variable, words = std::move(words), list, missing](const std::string& s) {
+        const std::string extension(missing != nullptr ? missing(s) : "");
+        if (!extension.empty())
+            throw UsageError('`' + s + "`: it belongs to the extension " + extension +
+                             ", which this build lacks");
         if (std::find(words.begin(), words.end(), s) == words.end())
             throw UsageError('`' + s + "` is none of " + list + didYouMean(s, words));
         variable = s;

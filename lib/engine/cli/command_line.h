@@ -98,9 +98,11 @@ class CommandLine {
                   double highest, const std::string& help, Enters enters);
     void duration(const std::string& names, double& variable, double lowest, double highest,
                   const std::string& help, Enters enters);
-    /// One of a fixed set of words.
+    /// One of a fixed set of words. \param missing returns the extension of a word that this build
+    /// lacks, "" for others; may be null
     void choice(const std::string& names, std::string& variable, std::vector<std::string> words,
-                const std::string& help, Enters enters);
+                const std::string& help, Enters enters,
+                std::string_view (*missing)(std::string_view word) = nullptr);
     /// A removed option, with its replacement as a hint.
     void renamed(const std::string& name, const std::string& hint);
     /// Replaces the usual description of the exit status in `--help`.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "io/exporters.h"
 #include "io/importers.h"
 #include "record/missing_keywords.h"
 
@@ -25,6 +26,8 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
             addMissingKeyword(name, extension);
         else if (owner == "format")
             addMissingFormat(name, extension);
+        else if (owner == "export")
+            addMissingExporter(name, extension);
         else if (owner == "objective")
             objectives_.push_back({extension, nullptr, name});
         else

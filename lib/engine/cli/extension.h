@@ -46,7 +46,7 @@ struct Extension {
 /// What an extension that a build lacks would bring.
 struct MissingOffer {
     std::string_view extension;
-    /// A tool (`name` is its option), or "record", "format" or "objective".
+    /// A tool (`name` is its option), or "record", "format", "export" or "objective".
     std::string_view owner;
     std::string_view name;
 };

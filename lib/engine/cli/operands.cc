@@ -24,6 +24,7 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
+#include "site/building_imports.h"
 #include "site/chosen_storeys.h"
 
 namespace ispace {
@@ -67,10 +68,10 @@ Document readStorey(const std::string& operand, std::string_view bytes, const Sc
     return chosenStorey(*building, operand, rules.storeys.one());
 }
 
-/// Returns the building of an IFC file that is read as the room of one storey; empty for others.
-std::optional<StoreyedDocument> ifcBuilding(std::string_view bytes, const std::string& operand,
-                                            const ImportOptions& import) {
-    if (!isIfc(bytes)) return std::nullopt;
+/// Returns the whole building of a file that is read as the room of one storey; empty for others.
+std::optional<StoreyedDocument> wholeBuilding(std::string_view bytes, const std::string& operand,
+                                              const ImportOptions& import) {
+    if (buildingImporter(bytes) == nullptr) return std::nullopt;
     ImportReport ignored;
     ImportOptions whole = import;
     whole.storey.clear();
@@ -178,9 +179,9 @@ class OperandReader {
             !report_.has_storeys)
             throw UsageError("--storey is about buildings, and " +
                              displayName(environment_operand_) + " is one room");
-        if (layout_ && namesStoreys(*layout_) && !ifc_.empty())
-            if (const auto whole =
-                    ifcBuilding(ifc_, environment_operand_, defaultImport(request_.rules, nullptr)))
+        if (layout_ && namesStoreys(*layout_) && !foreign_building_.empty())
+            if (const auto whole = wholeBuilding(foreign_building_, environment_operand_,
+                                                 defaultImport(request_.rules, nullptr)))
                 layout_ = layoutOfRoom(*layout_, *whole, environment_->records);
         if (layout_ && building_)
             layout_ = layoutOfStorey(*layout_, *building_, request_.rules.storeys.one());
@@ -235,7 +236,7 @@ class OperandReader {
 
     Document readBytes(const std::string& operand, std::string bytes) {
         Document document = readStorey(operand, bytes, request_.rules, report_, building_);
-        if (isIfc(bytes)) ifc_ = std::move(bytes);
+        if (buildingImporter(bytes) != nullptr) foreign_building_ = std::move(bytes);
         return document;
     }
 
@@ -302,7 +303,7 @@ class OperandReader {
     std::vector<std::string> named_;
     ImportReport report_;
     std::optional<StoreyedDocument> building_;   // of which the environment is a storey
-    std::string ifc_;                            // bytes of the environment, if it is one
+    std::string foreign_building_;               // bytes of the environment, see buildingImporter()
     std::shared_ptr<const KeptRoom> kept_ = {};  // the environment, if it was read before
 };
 
@@ -416,7 +417,7 @@ std::vector<Document> parseInputs(const std::vector<RawInput>& raw, const InputR
             return document.kind == DocumentKind::Layout && namesStoreys(document);
         }))
         for (std::size_t i = 0; i < raw.size(); ++i)
-            if (const auto whole = ifcBuilding(raw[i].bytes, raw[i].name, import))
+            if (const auto whole = wholeBuilding(raw[i].bytes, raw[i].name, import))
                 for (Document& document : documents)
                     if (document.kind == DocumentKind::Layout)
                         document = layoutOfRoom(document, *whole, documents[i].records);
@@ -449,7 +450,7 @@ std::string addEnvironment(std::vector<Document>& documents, const InputRequest&
                 Document room =
                     parseInput({reference->file, bytes}, request, request.import, building);
                 if (namesStoreys(documents[i]))
-                    if (const auto whole = ifcBuilding(bytes, reference->file, request.import))
+                    if (const auto whole = wholeBuilding(bytes, reference->file, request.import))
                         documents[i] = layoutOfRoom(documents[i], *whole, room.records);
                 return room;
             });

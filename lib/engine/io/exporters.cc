@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/message.h"
@@ -37,7 +39,7 @@ ExportedFiles drawnAs(const Scene& scene, const Document& /*document*/,
             ""};
 }
 
-constexpr ExportFormat kFormats[] = {
+constexpr ExportFormat kCoreFormats[] = {
     {.name = "glb",
      .suffix = "glb",
      .help = "glTF 2.0, which any viewer opens: one named node for each element, sensor and robot, "
@@ -111,18 +113,6 @@ constexpr ExportFormat kFormats[] = {
                                          "layout, too (envc room.env best.3dm -o FILE.urdf)"
                                        : ""};
      }},
-    {.name = "ifc",
-     .suffix = "ifc",
-     .help =
-         "A building of one storey in IFC4, in metres and degrees: walls with their openings, "
-         "doors and windows, rooms and zones as spaces with areas, furniture, pillars and other "
-         "objects, and the sensors (IfcSensor; cameras as IfcAudioVisualAppliance) with a property "
-         "set ispace_Sensor of Model, Height, Heading, Tilt, Roll, FieldOfView, "
-         "FieldOfViewVertical and Range. Rooms end at the faces of walls; walls without thickness "
-         "become 5 mm thick. envc skips robots, people and their sensors, and a warning reports "
-         "their number. GUIDs depend on the records alone, and the file has no date.",
-     .write = [](const Scene& scene, const Document& /*document*/,
-                 const ExportOptions& options) { return writeIfc(scene, options.title); }},
     {.name = "svg",
      .suffix = "svg",
      .help =
@@ -200,12 +190,42 @@ constexpr ExportFormat kFormats[] = {
      .naming_hint = "a mask is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml"},
 };
 
+std::vector<ExportFormat>& allFormats() {
+    static std::vector<ExportFormat> formats(std::begin(kCoreFormats), std::end(kCoreFormats));
+    return formats;
+}
+
+/// A format of an extension that is not in this build.
+struct MissingExporter {
+    std::string_view name, extension;
+};
+
+std::vector<MissingExporter>& missingExporters() {
+    static std::vector<MissingExporter> formats;
+    return formats;
+}
+
 }  // namespace
 
-std::span<const ExportFormat> exportFormats() { return kFormats; }
+void addExporters(std::span<const ExportFormat> formats) {
+    allFormats().insert(allFormats().end(), formats.begin(), formats.end());
+}
+
+void addMissingExporter(std::string_view name, std::string_view extension) {
+    missingExporters().push_back({name, extension});
+}
+
+std::string_view missingExporter(std::string_view name) {
+    for (const MissingExporter& format : missingExporters())
+        if (format.name == name) return format.extension;
+    return "";
+}
+
+std::span<const ExportFormat> exportFormats() { return allFormats(); }
 
 const ExportFormat& exportFormat(std::string_view name) {
-    return *std::find_if(std::begin(kFormats), std::end(kFormats),
+    const std::vector<ExportFormat>& formats = allFormats();
+    return *std::find_if(formats.begin(), formats.end(),
                          [name](const ExportFormat& format) { return format.name == name; });
 }
 

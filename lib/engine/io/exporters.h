@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writers of room formats, and the table of these formats. A new format is a writer and a row in
-// exporters.cc.
+// Writers of room formats, and the table of these formats: a row each. exporters.cc holds those of
+// the core, addExporters() adds those of extensions.
 #pragma once
 
 #include <cstdint>
@@ -59,6 +59,17 @@ struct ExportFormat {
     std::string_view naming_hint = "";    ///< hint for an output name that lacks the suffix
 };
 
+/// Adds formats after those of the core; a program does so before it asks for one.
+void addExporters(std::span<const ExportFormat> formats);
+
+/// States a format that an extension would write, which this program was built without: the error
+/// about `--to NAME` or a file with that suffix names the extension. \param name a literal, as the
+/// extension's
+void addMissingExporter(std::string_view name, std::string_view extension);
+
+/// Returns the extension that would write a format or suffix; "" for others.
+std::string_view missingExporter(std::string_view name);
+
 /// Returns all formats, in the order of `--to`; the default is the first that can represent the
 /// requested content.
 std::span<const ExportFormat> exportFormats();
@@ -115,17 +126,6 @@ std::string writeStl(const Scene& scene);
 /// scenes give equal bytes. \param title names the world, up to its first dot \param mesh_name the
 /// OBJ, as the world names it \throws UsageError if there are meshes and mesh_name is empty
 ExportedFiles writeSdf(const Scene& scene, const std::string& title, const std::string& mesh_name);
-
-/// Writes the room as an IFC4 building of one storey: lines of walls as IfcWall with
-/// IfcOpeningElement and the IfcDoor or IfcWindow in it, a slab below each floor, rooms and zones
-/// as IfcSpace, furniture, pillars and other things, sensors as IfcSensor and
-/// IfcAudioVisualAppliance with the property set `ispace_Sensor`.
-///
-/// A room is the indoor region without the walls that have a thickness; walls without one become 5
-/// mm thick. GUIDs are hashes of the scene's digest, the class and the id. Movers are left out:
-/// ExportedFiles::left_out counts them. Equal scenes and titles give equal bytes. O(n log n) for n
-/// walls and openings. \param title names the project
-ExportedFiles writeIfc(const Scene& scene, const std::string& title);
 
 /// Writes the placed sensors as URDF: a link each, named by its id, with a fixed joint from `world`
 /// or from the link of the robot or person that carries it. The joint of that link from `world` is

@@ -59,18 +59,6 @@ TEST(RobotUrdf, HasTheRobotAndItsSensorsByTheirFrames) {
         EXPECT_EQ(text.find(part), std::string::npos) << part;
 }
 
-TEST(ExportFormats, FixturesHaveTheirClassInIfc) {
-    const Document document = readRecordText(
-        "#env 1\nispace size=4,3\nlamp at=1,1\nheater at=1,0\nspeaker at=0,1\npanel at=0,0\n"
-        "switch at=1,-1\nprojector at=-1,0\n",
-        "room", sceneSchemas());
-    const std::string ifc =
-        writeIfc(makeScene(document, nullptr, DeviceCatalogue()), "room").product;
-    for (const char* type : {"=IFCLIGHTFIXTURE(", "=IFCSPACEHEATER(", ".SPEAKER.", ".PROJECTOR.",
-                             "=IFCELECTRICDISTRIBUTIONBOARD(", "=IFCSWITCHINGDEVICE("})
-        EXPECT_NE(ifc.find(type), std::string::npos) << type;
-}
-
 TEST(ExportFormats, BytesAreWhatTheRowSays) {
     const Document document = readRecordText("#env 1\nispace size=4,3\n", "room", sceneSchemas());
     const Scene scene = makeScene(document, nullptr, DeviceCatalogue());

@@ -14,9 +14,7 @@
 #include "io/calibration.h"
 #include "io/glb/glb_read.h"
 #include "io/import_records.h"
-#include "io/mesh/cloud_file.h"
-#include "io/mesh/mesh_file.h"
-#include "io/mesh/mesh_parts.h"
+#include "io/mesh_files.h"
 #include "raster/picture.h"
 #include "record/text.h"
 
@@ -149,36 +147,6 @@ std::string foreignJson(std::string_view bytes) {
 /// Bytes of a confined format that are a unit of the Budget of the building around it.
 constexpr std::size_t kConfinedBytesPerUnit = 8;
 
-/// Reads a mesh, with the upward axis that OBJ leaves open.
-template <Document (*kReader)(const std::string&, const ImportOptions&, const Schemas&)>
-Document readUpright(const ImportSource& source) {
-    ImportOptions options = source.options;
-    if (options.up != "auto" || meshFormatOf(source.bytes) != MeshFormat::Obj)
-        return kReader(source.operand, options, source.schemas);
-    const auto* const unit =
-        std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
-                     [&](const LengthUnit& known) { return known.name == options.units; });
-    options.up = objUpAxis(source.bytes, unit == kLengthUnits.end() ? 1 : unit->metres);
-    Document document = kReader(source.operand, options, source.schemas);
-    const std::string choice = "OBJ taken with " + options.up + " upwards";
-    if (!objUpComment(source.bytes) && options.report != nullptr)
-        options.report->addChoice(source.operand, choice + ", by its extent; --up says otherwise");
-    else
-        document.notes.insert(document.notes.begin(), choice);
-    return document;
-}
-constexpr auto* kReadMesh = readUpright<meshDocument>;
-constexpr auto* kReadWalls = readUpright<readMeshWalls>;
-bool isGlbMesh(const ImportSource& source) {
-    return isGlb(source.bytes) && !glbHasRecords(source.bytes);
-}
-/// Returns true for a mesh that is cut into walls, which is a plan; a model of ours never is.
-bool isCutMesh(const ImportSource& source) {
-    if (!source.options.slice_walls || isPointCloud(source.bytes)) return false;
-    const bool is_mesh =
-        isGlbMesh(source) || isMeshFile(source.bytes) || hasMeshSuffix(source.operand);
-    return is_mesh && !isRecordText(source.bytes);
-}
 Document readRecordsOfGlb(const ImportSource& source) {
     return readGlb(source.bytes, source.operand, source.schemas);
 }
@@ -190,27 +158,20 @@ Document readYamlRecords(const ImportSource& source) {
                     source.options.includes);
 }
 
-/// The formats in which records are written.
-constexpr Importer kRecordText{
-    "`#3dm 1`, `#env 1`", false,
-    [](const ImportSource& source) { return isRecordText(source.bytes); }, readRecords};
+/// The formats in which records are written. They come first.
+constexpr Importer kFormatsOfRecords[] = {
+    {"", false,
+     [](const ImportSource& source) { return isGlb(source.bytes) && glbHasRecords(source.bytes); },
+     readRecordsOfGlb},
+    {"`#3dm 1`, `#env 1`", false,
+     [](const ImportSource& source) { return isRecordText(source.bytes); }, readRecords},
+};
 
-/// Formats recognised by their first bytes.
+/// Formats recognised by their first bytes, after those of extensions.
 constexpr Importer kFormatsByMagic[] = {
-    {"", true, isCutMesh, kReadWalls, true},
-    {"", false, isGlbMesh, kReadMesh, true},
     {"GLB", false, [](const ImportSource& source) { return isGlb(source.bytes); },
      readRecordsOfGlb},
-    kRecordText,
-    {"IFC", true, [](const ImportSource& source) { return isIfc(source.bytes); },
-     [](const ImportSource& source) {
-         return readIfc(source.bytes, source.operand, source.options, source.schemas);
-     },
-     true},
     importer<isPicture, readBarePicture>("a picture"),
-    importer<isPointCloud, readPointCloud>("a point cloud"),
-    {"a mesh", false, [](const ImportSource& source) { return isMeshFile(source.bytes); },
-     kReadMesh, true},
 };
 
 /// Formats recognised within plain text; the last accepts any text.
@@ -218,10 +179,6 @@ constexpr Importer kFormatsOfText[] = {
     importer<isRosMap, readRosMap>("a ROS map"),
     {"YAML", false, [](const ImportSource&) { return true; }, readYamlRecords},
 };
-
-constexpr Importer kMeshBySuffix{
-    "", false, [](const ImportSource& source) { return hasMeshSuffix(source.operand); }, kReadMesh,
-    true};
 
 std::vector<Importer>& addedImporters() {
     static std::vector<Importer> importers;
@@ -243,18 +200,6 @@ bool hasJsonKey(std::string_view bytes, std::string_view key) {
     return isJson(bytes) && bytes.find(quoted) != std::string_view::npos;
 }
 
-/// Returns the extension that would read the source; "" for others.
-std::string_view extensionFor(const ImportSource& source) {
-    for (const auto& [sign, extension] : missingFormats()) {
-        const bool is_its = sign.front() == '.'   ? meshSuffix(source.operand) == sign
-                            : sign.front() == '{' ? hasJsonKey(source.bytes, sign.substr(1))
-                            : sign.front() == '<' ? xmlRootName(source.bytes) == sign.substr(1)
-                                                  : source.bytes.starts_with(sign);
-        if (is_its) return extension;
-    }
-    return "";
-}
-
 /// Lists the formats, in the order of their names: "wanted DXF, GLB or SVG".
 std::string wanted() {
     std::vector<std::string_view> names;
@@ -262,6 +207,7 @@ std::string wanted() {
         for (const Importer& row : rows)
             if (!row.name.empty()) names.push_back(row.name);
     };
+    add(kFormatsOfRecords);
     add(kFormatsByMagic);
     add(kFormatsOfText);
     add(addedImporters());
@@ -274,9 +220,10 @@ std::string wanted() {
     return text;
 }
 
-const Importer* findFormat(std::span<const Importer> formats, const ImportSource& source) {
-    const auto found = std::find_if(formats.begin(), formats.end(), [&source](const auto& format) {
-        return format.recognises(source);
+const Importer* findFormat(std::span<const Importer> formats, const ImportSource& source,
+                           bool by_name = false) {
+    const auto found = std::find_if(formats.begin(), formats.end(), [&](const auto& format) {
+        return format.by_name == by_name && format.recognises(source);
     });
     return found == formats.end() ? nullptr : &*found;
 }
@@ -287,17 +234,16 @@ const Importer* formatOf(const ImportSource& source, Refuse refuse) {
     const std::string_view bytes = source.bytes;
     if (bytes.find_first_not_of(kBlanks) == std::string_view::npos)
         return refuse(0, "empty input: " + wanted()), nullptr;
-    if (const Importer* format = findFormat(kFormatsByMagic, source)) return format;
+    if (const Importer* format = findFormat(kFormatsOfRecords, source)) return format;
     if (const Importer* format = findFormat(addedImporters(), source)) return format;
-    if (const std::string_view extension = extensionFor(source); !extension.empty())
-        return refuse(0, "this build lacks the extension " + std::string(extension) +
-                             ", which reads such files"),
-               nullptr;
+    if (const Importer* format = findFormat(kFormatsByMagic, source)) return format;
+    if (const std::string lacks = missingReader(bytes, source.operand); !lacks.empty())
+        return refuse(0, lacks), nullptr;
     if (const std::string what = foreignFile(bytes); !what.empty())
         return refuse(0, "not an environment or layout but " + what), nullptr;
     if (const std::string what = foreignMesh(source.operand); !what.empty())
         return refuse(0, "not an environment or layout but " + what), nullptr;
-    if (kMeshBySuffix.recognises(source)) return &kMeshBySuffix;
+    if (const Importer* format = findFormat(addedImporters(), source, true)) return format;
     if (!isPlainText(bytes)) return refuse(0, "not an environment or layout: " + wanted()), nullptr;
     if (isJson(bytes))
         if (const std::string what = foreignJson(bytes); !what.empty())
@@ -336,6 +282,19 @@ void addImporters(std::span<const Importer> importers) {
 
 void addMissingFormat(std::string_view sign, std::string_view extension) {
     missingFormats().push_back({sign, extension});
+}
+
+std::string missingReader(std::string_view bytes, const std::string& operand) {
+    for (const auto& [sign, extension] : missingFormats()) {
+        const bool is_its = sign.front() == '.'   ? fileSuffix(operand) == sign
+                            : sign.front() == '{' ? hasJsonKey(bytes, sign.substr(1))
+                            : sign.front() == '<' ? xmlRootName(bytes) == sign.substr(1)
+                                                  : bytes.starts_with(sign);
+        if (is_its)
+            return "this build lacks the extension " + std::string(extension) +
+                   ", which reads such files";
+    }
+    return "";
 }
 
 bool isPlan(std::string_view bytes, const std::string& operand, const ImportOptions& options,

@@ -64,7 +64,7 @@ struct ImportOptions {
     std::optional<double> clean;      ///< metres: smaller features of a map are noise; 0 keeps all;
                                       ///< default: kNoiseWidth, or 0 if `simplify` is 0
     std::string unknown = "unknown";  ///< or "free": shade 205 of a map, see OccupancyRule
-    std::string storey;               ///< of a building, by name or number; "": see readIfc
+    std::string storey;               ///< of a building, by name or number; "": one is chosen
     std::string units;                ///< m, cm, mm, inch or foot; "": from the file
     std::optional<double> width_is;   ///< metres from a drawing's leftmost to its rightmost wall;
                                       ///< overrides the unit of the file
@@ -107,6 +107,8 @@ struct Importer {
     bool (*recognises)(const ImportSource& source) = nullptr;
     Document (*read)(const ImportSource& source) = nullptr;
     bool is_confined = false;  ///< read by a program that bounds its own work
+    /// Its file's name alone tells it, as .gltf does: tried after all rows that know the content.
+    bool by_name = false;
 };
 
 /// Returns the row of a format that its bytes alone tell:
@@ -121,13 +123,18 @@ constexpr Importer importer(std::string_view name, bool is_plan = true) {
             }};
 }
 
-/// Adds formats, which are tried after those of the core; a program does so before it reads a file.
+/// Adds formats, which are tried after records and before all other formats of the core; a program
+/// does so before it reads a file.
 void addImporters(std::span<const Importer> importers);
 
 /// States a format that an extension would read, which this program was built without: the error
 /// about such a file names the extension. \param sign a suffix (".dxf"), the root of XML ("<sdf"),
 /// a key of JSON ("{verts"), or the first bytes; a literal, as the extension's name
 void addMissingFormat(std::string_view sign, std::string_view extension);
+
+/// Returns the sentence about a file that a missing extension would read, see addMissingFormat();
+/// "" for others.
+std::string missingReader(std::string_view bytes, const std::string& operand);
 
 /// Returns true if the bytes are a plan, map or drawing. Its importer chooses rooms, so it requires
 /// the walls and inside points of other inputs and edits beforehand (ImportOptions).
@@ -164,39 +171,5 @@ bool isRosMap(std::string_view bytes);
 /// YAML or image, std::system_error for a missing image
 Document readRosMap(std::string_view yaml, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas);
-
-/// Reads the plan in the cut through a mesh of a room or building at ImportOptions::slice_walls, a
-/// height after `units` and `up`: cuts become walls, solids that meet become one, and the room is
-/// chosen by chooseRooms(). Lines are simplified by at most a millimetre unless
-/// ImportOptions::simplify says otherwise. \throws FormatError if the mesh does not reach this
-/// height, and as meshDocument and loadMesh
-Document readMeshWalls(const std::string& operand, const ImportOptions& options,
-                       const Schemas& schemas);
-
-/// Reads the plan in a point cloud (see CloudFile): cells of ImportOptions::resolution (default 5
-/// cm) with points between slice_walls and slice_top are walls, and the room is chosen among the
-/// others as in writeCellMap(). Gaps between points are closed as little as it takes to enclose a
-/// room, at most 1.2 m, unless `close_gaps` says otherwise. Islands that end below slice_top become
-/// cubes and cylinders, or noise. \throws FormatError: no heights, no points between them, no room
-Document readPointCloud(std::string_view bytes, const std::string& name,
-                        const ImportOptions& options, const Schemas& schemas);
-
-/// Returns true for the text of a STEP file with a schema of IFC.
-bool isIfc(std::string_view bytes);
-
-/// Reads a storey of an IFC building (2x3, 4 or 4.3), see chosenStorey(), in a separate process.
-///
-/// - Walls, curtain walls, plates and members are cut 1 m above the floor, or at
-/// ImportOptions::slice_walls (the building's own height). Their faces become closed fences, so
-/// that rooms keep their width; holes in walls with their doors and windows become doors and
-/// windows through both faces.
-/// - Spaces become zones, and the rooms that hold them are kept; without spaces the room is chosen
-/// by chooseRooms().
-/// - Columns become pillars, furniture, fixtures and stairs boxes and cylinders.
-///
-/// Warnings count the geometry that is not read. \throws FormatError: cut off, no such storey, and
-/// as readBuilding()
-Document readIfc(std::string_view bytes, const std::string& operand, const ImportOptions& options,
-                 const Schemas& schemas);
 
 }  // namespace ispace

@@ -2,6 +2,7 @@
 // Buildings of other programs.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,14 +30,20 @@ bool isRmfSite(const YamlNode& top);
 StoreyedDocument readRmfSite(const YamlNode& top, const std::string& operand,
                              const ImportOptions& import, Budget& work);
 
-/// Reads all storeys of an IFC building that have walls or spaces, see readIfcStoreys().
-///
-/// A flight of stairs from one of them to the next becomes `stairs`: the file gives the box around
-/// it, and the end with free floor before it is the foot. A transport element becomes a `lift` of
-/// the storeys with a door before one side of its box; one with a single door is left out.
-/// \throws FormatError as readIfc(), if no storey has walls, and if lifts and doors take more than
-///         a budget
-StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& operand,
-                                 const ImportOptions& options);
+/// A format of other programs in which one file holds the storeys of a building: one row. A room of
+/// one storey of it is read by its Importer.
+struct BuildingImporter {
+    bool (*recognises)(std::string_view bytes) = nullptr;
+    /// Returns false for files that are certainly one room unless storeys are chosen. O(bytes)
+    bool (*may_have_storeys)(std::string_view bytes) = nullptr;
+    StoreyedDocument (*read)(std::string_view bytes, const std::string& operand,
+                             const ImportOptions& options) = nullptr;
+};
+
+/// Adds formats; a program does so before it reads a file.
+void addBuildingImporters(std::span<const BuildingImporter> importers);
+
+/// Returns the format of a file; null if there is none.
+const BuildingImporter* buildingImporter(std::string_view bytes);
 
 }  // namespace ispace

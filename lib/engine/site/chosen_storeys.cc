@@ -37,26 +37,23 @@ std::vector<std::size_t> storeysCalled(const StoreyedDocument& building, const s
     return found;
 }
 
-/// Returns true if a file has two or more instances of a type. \param type in capitals
-bool hasSeveral(std::string_view bytes, std::string_view type) {
-    int count = 0;
-    for (std::size_t at = bytes.find(type); at != std::string_view::npos && count < 2;
-         at = bytes.find(type, at + type.size())) {
-        const std::size_t next = bytes.find_first_not_of(" \t\r\n", at + type.size());
-        if (next != std::string_view::npos && bytes[next] == '(') ++count;
-    }
-    return count == 2;
-}
-
-/// Returns true for one building in IFC of which more than one storey may have rooms. Buildings
-/// side by side are no site: their storeys lie beside each other.
-bool isIfcOfStoreys(std::string_view bytes) {
-    if (!isIfc(bytes)) return false;
-    if (bytes.starts_with("PK")) return true;  // known once unpacked
-    return hasSeveral(bytes, "IFCBUILDINGSTOREY") && !hasSeveral(bytes, "IFCBUILDING");
+std::vector<BuildingImporter>& addedImporters() {
+    static std::vector<BuildingImporter> importers;
+    return importers;
 }
 
 }  // namespace
+
+void addBuildingImporters(std::span<const BuildingImporter> importers) {
+    addedImporters().insert(addedImporters().end(), importers.begin(), importers.end());
+}
+
+const BuildingImporter* buildingImporter(std::string_view bytes) {
+    const std::vector<BuildingImporter>& importers = addedImporters();
+    const auto found = std::find_if(importers.begin(), importers.end(),
+                                    [bytes](const auto& row) { return row.recognises(bytes); });
+    return found == importers.end() ? nullptr : &*found;
+}
 
 StoreyedDocument chosenStoreys(StoreyedDocument building, const StoreyChoice& choice,
                                const std::string& operand) {
@@ -96,17 +93,20 @@ StoreyedDocument chosenStoreys(StoreyedDocument building, const StoreyChoice& ch
 
 bool mayHoldStoreys(std::string_view bytes, const StoreyChoice& choice) {
     if (choice.isOne()) return false;
-    return isBuilding(bytes) || (choice.isEmpty() ? isIfcOfStoreys(bytes) : isIfc(bytes));
+    if (isBuilding(bytes)) return true;
+    const BuildingImporter* const importer = buildingImporter(bytes);
+    return importer != nullptr && (!choice.isEmpty() || importer->may_have_storeys(bytes));
 }
 
 std::optional<StoreyedDocument> readStoreys(std::string_view bytes, const std::string& operand,
                                             const ImportOptions& options,
                                             const StoreyChoice& choice) {
-    if (!isIfc(bytes)) return readBuilding(bytes, operand, options);
+    const BuildingImporter* const importer = buildingImporter(bytes);
+    if (importer == nullptr) return readBuilding(bytes, operand, options);
     ImportReport report;
     ImportOptions own = options;
     own.report = &report;
-    StoreyedDocument building = readIfcBuilding(bytes, operand, own);
+    StoreyedDocument building = importer->read(bytes, operand, own);
     if (choice.isEmpty() && building.storeys.size() == 1) return std::nullopt;
     if (!choice.isEmpty()) {  // the user knows the storeys
         for (const Diagnostic& told : report.choices) building.notes.push_back(told.message);

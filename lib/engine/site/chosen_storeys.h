@@ -25,8 +25,9 @@ StoreyedDocument chosenStoreys(StoreyedDocument building, const StoreyChoice& ch
 bool mayHoldStoreys(std::string_view bytes, const StoreyChoice& choice);
 
 /// Reads all storeys of a building in any format, of which chosenStoreys() takes those that are
-/// chosen: ours, Open-RMF, IFC. std::nullopt for an IFC file of one storey if none are chosen: it
-/// is a room. \pre mayHoldStoreys() \throws FormatError as readBuilding() and readIfcBuilding()
+/// chosen: ours, Open-RMF, those of addBuildingImporters(). std::nullopt for a file of the latter
+/// with one storey if none are chosen: it is a room. \pre mayHoldStoreys() \throws FormatError as
+/// readBuilding() and the importers
 std::optional<StoreyedDocument> readStoreys(std::string_view bytes, const std::string& operand,
                                             const ImportOptions& options,
                                             const StoreyChoice& choice);

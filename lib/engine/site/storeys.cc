@@ -18,7 +18,7 @@
 #include "io/exporters.h"
 #include "io/glb/glb_read.h"
 #include "io/import_records.h"
-#include "io/mesh/mesh_file.h"
+#include "io/mesh_files.h"
 #include "io/plan/layer_names.h"
 #include "record/text.h"
 #include "record/yaml/yaml.h"
@@ -268,7 +268,9 @@ bool isBuilding(std::string_view bytes) {
     bytes = withoutBom(bytes);
     if (isRecordText(bytes)) return hasStoreyLine(bytes);
     constexpr std::size_t kLooked = 4096;
-    if (bytes.substr(0, kLooked).find('\0') != std::string_view::npos || isIfc(bytes)) return false;
+    if (bytes.substr(0, kLooked).find('\0') != std::string_view::npos ||
+        buildingImporter(bytes) != nullptr)
+        return false;
     return xmlRootName(bytes).empty() && beginsAsYaml(bytes) && hasStoreyNode(bytes);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "extensions/cad/cad.h"
 
-#include "io/mesh/mesh_parts.h"
+#include "io/mesh_files.h"
 
 namespace ispace {
 
@@ -10,7 +10,7 @@ namespace {
 /// Returns true for JSON with outlines; glTF may have such a word, too.
 bool isHouseExpo(const ImportSource& source) {
     return isJson(source.bytes) && source.bytes.find("\"verts\"") != std::string_view::npos &&
-           !hasMeshSuffix(source.operand);
+           fileSuffix(source.operand) != ".gltf";
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "extensions/gazebo/sdf_files.h"
 #include "extensions/worlds/world_import.h"
 #include "io/import_records.h"
-#include "io/mesh/mesh_parts.h"
+#include "io/mesh_files.h"
 
 namespace ispace {
 

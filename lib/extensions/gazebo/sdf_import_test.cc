@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "extensions/gazebo/gazebo.h"
+#include "extensions/meshes/meshes_test.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "support/test_folder.h"
@@ -264,6 +265,8 @@ TEST(SdfImport, FilesOutsideOfItsFolderAreNotOpened) {
 /// 6 m x 4 m, with a doorway of the given width in the south.
 class SdfMeshWalls : public ::testing::Test {
   protected:
+    SdfMeshWalls() { testing::addMeshesOnce(); }
+
     void writeWalls(double door) const {
         const double left = -door / 2, right = door / 2;
         const std::array<std::array<double, 4>, 5> boxes{{{-3.2, -2.2, left, -2},
@@ -360,6 +363,7 @@ TEST_F(SdfMeshWalls, StayMeshesWhereBoxesDo) {
 }
 
 TEST(SdfImport, BadMeshesAreLeftOut) {
+    testing::addMeshesOnce();
     const testing::TestFolder folder;
     writeAll(folder.file("bad.dae"), "<COLLADA>");
     std::string world = "<sdf version='1.7'><world name='w'>";

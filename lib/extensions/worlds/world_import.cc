@@ -22,7 +22,7 @@
 #include "io/exporters.h"
 #include "io/import_records.h"
 #include "io/importers.h"
-#include "io/mesh/mesh_file.h"
+#include "io/mesh_files.h"
 #include "io/plan/line_plan.h"
 #include "io/plan/plan_rooms.h"
 #include "io/sdf/sdf_parts.h"

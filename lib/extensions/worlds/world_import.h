@@ -14,7 +14,7 @@
 #include "extensions/worlds/world_shapes.h"
 #include "geom/polygon.h"
 #include "io/import_records.h"
-#include "io/mesh/mesh_file.h"
+#include "io/mesh_files.h"
 #include "io/plan/plan_rooms.h"
 #include "record/schema.h"
 

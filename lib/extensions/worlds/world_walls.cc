@@ -16,8 +16,8 @@
 #include "env/body.h"
 #include "env/slice.h"
 #include "io/exporters.h"
-#include "io/mesh/mesh_cut.h"
-#include "io/mesh/mesh_file.h"
+#include "io/mesh_files.h"
+#include "io/plan/cut_paths.h"
 #include "io/sdf/sdf_parts.h"
 #include "record/record.h"
 
@@ -265,7 +265,7 @@ void joinEnds(std::vector<WorldWall>& walls, Budget& work) {
 }
 
 std::string worldMeshUp(const std::string& file) {
-    const std::string suffix = meshSuffix(file);
+    const std::string suffix = fileSuffix(file);
     return suffix == ".dae" || suffix == ".obj" ? "z" : "auto";
 }
 

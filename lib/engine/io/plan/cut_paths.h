@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "base/budget.h"
+#include "env/slice.h"
+#include "io/plan/plan_lines.h"
+
+namespace ispace {
+
+/// Cuts of meshes are straight within this, in metres: floats of a file vary by less.
+constexpr double kMeshStraight = 0.001;
+
+/// Returns the cut through meshes as lines of a plan, straight within
+/// kMeshStraight. Solids that meet at
+/// edges, such as walls that run into each other, are united; a solid inside another remains, e.g.
+/// furniture in a room modelled by its inner surface.
+/// \param work pays for outlines that cross each other often
+/// \throws FormatError (without file and line) if the work is used up
+std::vector<PlanPath> cutPaths(Slice slice, Budget& work);
+
+}  // namespace ispace

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/ifc/ifc.h"
+
+namespace ispace::extension {
+
+Extension ifc() { return {.name = "ifc", .add = addIfc}; }
+
+}  // namespace ispace::extension

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+
+#include "io/packed_mesh.h"
+
+namespace ispace {
+
+/// Limits of lib/ispace/read-building: those of meshes, but more time, since solids of a building
+/// are cut by each other.
+inline ConfinedLimits buildingLimits(std::size_t file_bytes) {
+    constexpr std::size_t kMega = 1U << 20U;
+    ConfinedLimits limits = meshLimits(file_bytes);
+    limits.seconds = 60 + 10 * std::min<std::size_t>(file_bytes / kMega, 1024);
+    return limits;
+}
+
+}  // namespace ispace

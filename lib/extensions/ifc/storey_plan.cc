@@ -1,0 +1,458 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/ifc/storey_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "geom/arrangement.h"
+#include "geom/overlay/overlay.h"
+#include "geom/predicates.h"
+#include "geom/tolerance.h"
+
+namespace ispace {
+
+namespace {
+
+constexpr double kParallel = 0.017;  // sine of a degree
+constexpr double kMinShare = 0.6;    // of an opening's width that a face has to bear
+constexpr double kMinWidth = 0.3;    // metres, of openings
+/// Distance from boxes to the faces that they go through, in metres: for holes, and for doors and
+/// windows without one.
+constexpr double kHoleReach = 0.05, kDoorReach = 0.5;
+constexpr double kThickestPane = 0.5;  // metres
+constexpr double kJambReach = 0.4;     // beyond a door to the ends of walls beside it
+constexpr double kMaxThrough = 0.99;   // metres: thickest wall that an opening goes through
+constexpr double kThinnestWall = 0.01;
+constexpr double kBesideWall = 0.1;  // metres between the face of a wall and a door in front of it
+constexpr double kIntoWall = 0.002;  // that a part overlaps the walls which it joins
+
+std::vector<Segment2> linesOf(std::span<const Region> solids) {
+    std::vector<Segment2> lines;
+    for (const Region& solid : solids)
+        solid.forEachEdge([&](const Segment2& edge) { lines.push_back(edge); });
+    return lines;
+}
+
+}  // namespace
+
+std::vector<Segment2> StoreyOpening::reveals() const {
+    std::vector<Segment2> reveals;
+    for (const Segment2& other : others)
+        for (const Point2 end : {other.a, other.b})
+            reveals.push_back({nearestPoint(line, end), end});
+    return reveals;
+}
+
+WallFaces::WallFaces(const StoreyWalls& walls, Budget& work)
+    : walls_(walls), search_(linesOf(walls.solids), work) {
+    std::size_t curve = 0;
+    const auto add = [&](const Polygon& polygon) {
+        forEachEdge(polygon, [&](const Segment2& edge) { faces_.push_back({edge, curve}); });
+        ++curve;
+    };
+    for (const Region& solid : walls.solids) {
+        add(solid.outline);
+        for (const Polygon& hole : solid.holes) add(hole);
+    }
+}
+
+std::vector<WallFaces::Beside> WallFaces::facesBeside(const BuildingBox& box, double reach) const {
+    const Vec2 u = box.along, v = perpendicular(u);
+    const double half = box.length / 2, beyond = box.width / 2 + reach;
+    Box2 window;
+    for (const double x : {-half, half})
+        for (const double y : {-beyond, beyond}) window.add(box.center + x * u + y * v);
+    std::vector<Beside> beside;
+    for (const std::size_t i : search_.near(window, 0)) {
+        const Segment2& line = faces_[i].line;
+        const Vec2 along = line.b - line.a;
+        if (std::abs(cross(u, along)) > kParallel * length(along)) continue;
+        const double a = dot(line.a - box.center, u), b = dot(line.b - box.center, u);
+        const double from = std::max(std::min(a, b), -half), to = std::min(std::max(a, b), half);
+        if (to - from < std::max(kMinWidth, kMinShare * box.length)) continue;
+        const double aside = (dot(line.a - box.center, v) + dot(line.b - box.center, v)) / 2;
+        if (std::abs(aside) <= beyond) beside.push_back({&faces_[i], from, to, aside, b > a});
+    }
+    return beside;
+}
+
+std::optional<StoreyOpening> WallFaces::through(const BuildingBox& box, bool is_hole) const {
+    const std::vector<Beside> beside = facesBeside(box, is_hole ? kHoleReach : kDoorReach);
+    const Beside *lower = nullptr, *upper = nullptr;
+    const double half = box.width / 2;
+    for (const Beside& face : beside) {
+        if (face.is_lower && face.aside <= half &&
+            (lower == nullptr || (face.aside < lower->aside) == is_hole))
+            lower = &face;
+        if (!face.is_lower && face.aside >= -half &&
+            (upper == nullptr || (face.aside > upper->aside) == is_hole))
+            upper = &face;
+    }
+    if (lower == nullptr || upper == nullptr) return std::nullopt;
+    const double depth = upper->aside - lower->aside;
+    if (!(depth > 0) || depth > kMaxThrough) return std::nullopt;
+    const bool host_is_lower = lower->to - lower->from >= upper->to - upper->from;
+    const Beside& host = host_is_lower ? *lower : *upper;
+    const auto clipped = [&](const Beside& face, double from, double to) {
+        const Segment2& line = face.face->line;
+        const auto at = [&](double x) {
+            return wholeMicrometres(nearestPoint(
+                line, box.center + x * box.along + face.aside * perpendicular(box.along)));
+        };
+        return Segment2{at(from), at(to)};
+    };
+    StoreyOpening opening;
+    opening.line = clipped(host, host.from, host.to);
+    opening.curve = host.face->curve;
+    opening.depth = depth;
+    for (const Beside& face : beside)
+        if (&face != &host && face.aside >= lower->aside && face.aside <= upper->aside)
+            opening.others.push_back(
+                clipped(face, std::max(face.from, host.from), std::min(face.to, host.to)));
+    return opening;
+}
+
+std::optional<StoreyOpening> WallFaces::across(const BuildingBox& box) const {
+    const double half = box.length / 2;
+    Point2 jambs[2];
+    for (const int side : {0, 1}) {
+        const Vec2 out = (side == 0 ? -1 : 1) * box.along;
+        const Segment2 ray{box.center, box.center + (half + kJambReach) * out};
+        double nearest = HUGE_VAL;
+        for (const std::size_t i : search_.near(bounds(ray), 0)) {
+            const Segment2& line = faces_[i].line;
+            const double turn = cross(line.b - line.a, out);
+            if (std::abs(turn) < 1e-12 || !intersects(line, ray)) continue;
+            nearest = std::min(nearest, cross(line.b - line.a, line.a - box.center) / turn);
+        }
+        if (nearest > half + kJambReach || nearest < half / 2) return std::nullopt;
+        jambs[side] = wholeMicrometres(box.center + nearest * out);
+    }
+    if (isInWall(box.center) || distance(jambs[0], jambs[1]) < kMinWidth) return std::nullopt;
+    StoreyOpening opening;
+    opening.line = {jambs[0], jambs[1]};
+    return opening;
+}
+
+std::optional<StoreyOpening> WallFaces::find(const BuildingBox& box, bool is_hole) const {
+    BuildingBox turned = box;
+    turned.along = perpendicular(box.along);
+    std::swap(turned.length, turned.width);
+    for (const BuildingBox* const one : {&box, static_cast<const BuildingBox*>(&turned)})
+        if (auto opening = through(*one, is_hole)) return opening;
+    for (const BuildingBox* const one : {&box, static_cast<const BuildingBox*>(&turned)})
+        if (auto opening = across(*one)) return opening;
+    // A window or door that is a wall itself, e.g. panes from floor to ceiling.
+    const BuildingBox& longer = box.length >= box.width ? box : turned;
+    if (is_hole || longer.length < kMinWidth || longer.width > kThickestPane ||
+        isInWall(box.center))
+        return std::nullopt;
+    const Vec2 half = longer.length / 2 * longer.along;
+    StoreyOpening opening;
+    opening.line = {wholeMicrometres(longer.center - half), wholeMicrometres(longer.center + half)};
+    return opening;
+}
+
+bool WallFaces::isInWall(Point2 p) const {
+    return std::any_of(walls_.solids.begin(), walls_.solids.end(),
+                       [p](const Region& solid) { return solid.locate(p) != Side::Outside; });
+}
+
+std::optional<WallFaces::Jamb> WallFaces::jambBeside(const BuildingBox& box, double side) const {
+    const Vec2 u = box.along, v = perpendicular(u);
+    const double half = box.length / 2, beyond = box.width / 2 + kBesideWall;
+    Box2 window;
+    for (const double x : {side * half / 2, side * (half + kJambReach)})
+        for (const double y : {-beyond, beyond}) window.add(box.center + x * u + y * v);
+    std::optional<Jamb> nearest;
+    for (const std::size_t i : search_.near(window, 0)) {
+        const Segment2& line = faces_[i].line;
+        const Vec2 along = line.b - line.a;
+        const double l = length(along);
+        if (std::abs(dot(u, along)) > kParallel * l || side * cross(u, along) >= 0) continue;
+        const double from = dot(line.a - box.center, v), to = dot(line.b - box.center, v);
+        Jamb jamb;
+        jamb.slope = dot(along, u) / dot(along, v);
+        jamb.at = dot(line.a - box.center, u) - jamb.slope * from;
+        std::tie(jamb.low, jamb.high) = std::minmax({from, to});
+        const double off = side * jamb.at;
+        if (off < half / 2 || off > half + kJambReach ||
+            std::min(jamb.high, beyond) - std::max(jamb.low, -beyond) < kThinnestWall)
+            continue;
+        if (!nearest || off < side * nearest->at) nearest = jamb;
+    }
+    return nearest;
+}
+
+std::optional<Polygon> WallFaces::missingWall(const BuildingBox& box, bool from_one_end) const {
+    BuildingBox turned = box;
+    turned.along = perpendicular(box.along);
+    std::swap(turned.length, turned.width);
+    if (isInWall(box.center)) return std::nullopt;
+    for (const BuildingBox* const one : {&box, static_cast<const BuildingBox*>(&turned)}) {
+        if (one->length < kMinWidth) continue;
+        std::optional<Jamb> left = jambBeside(*one, -1), right = jambBeside(*one, 1);
+        const bool may_end = from_one_end && one->length >= one->width;
+        if ((!left || !right) && !((left || right) && may_end)) continue;
+        const auto box_end = [&](const Jamb& other, double at) {
+            return Jamb{at, 0, other.low, other.high};
+        };
+        const double into_left = left ? kIntoWall : 0, into_right = right ? kIntoWall : 0;
+        if (!left) left = box_end(*right, -one->length / 2);
+        if (!right) right = box_end(*left, one->length / 2);
+        const double low = std::max(left->low, right->low);
+        const double high = std::min(left->high, right->high);
+        if (high - low < kThinnestWall || high - low > kMaxThrough) continue;
+        const Vec2 u = one->along, v = perpendicular(u);
+        const auto at = [&](const Jamb& jamb, double into, double y) {
+            return wholeMicrometres(one->center + (jamb.at + jamb.slope * y + into) * u + y * v);
+        };
+        Polygon part{at(*left, -into_left, low), at(*right, into_right, low),
+                     at(*right, into_right, high), at(*left, -into_left, high)};
+        if (isInWall(part[0] + 0.5 * (part[2] - part[0]))) return std::nullopt;
+        return part;
+    }
+    return std::nullopt;
+}
+
+void carve(StoreyWalls& walls, std::span<const BuildingBox> holes) {
+    constexpr double kBeyond = 0.02;
+    std::vector<Polygon> boxes;
+    for (const BuildingBox& hole : holes) {
+        const Vec2 u = hole.length / 2 * hole.along;
+        const Vec2 v = (hole.width / 2 + kBeyond) * perpendicular(hole.along);
+        boxes.push_back(
+            {hole.center - u - v, hole.center + u - v, hole.center + u + v, hole.center - u + v});
+    }
+    walls.solids = difference(Regions{walls.solids}, boxes);
+}
+
+namespace {
+
+constexpr double kMeet = 0.002;       // metres between walls that should meet
+constexpr double kStraight = 1e-4;    // within which corners lie on a face where another wall ends
+constexpr double kTouch = 0.01;       // and between a column and the wall it belongs to
+constexpr double kSameCorner = 1e-5;  // exporters round ends of walls that should meet
+
+Layer layerOf(std::span<const Polygon> curves) {
+    std::vector<Curve> all;
+    all.reserve(curves.size());
+    for (const Polygon& curve : curves) all.push_back(curveOf(curve));
+    return {.curves = std::move(all)};
+}
+
+std::vector<Region> united(std::span<const Layer> layers) {
+    return Overlay(layers).regions([](const LayerLabel& label) { return label.count > 0; });
+}
+
+/// Returns the parts of a section, each minus its removed area.
+std::vector<std::vector<Polygon>> partsOf(const BuildingSection& section) {
+    std::vector<std::vector<Polygon>> parts;
+    for (const BuildingSection::Part& part : section.parts) {
+        if (part.removed.empty()) {
+            parts.push_back(part.curves);
+            continue;
+        }
+        std::vector<Layer> layers{layerOf(part.curves)};
+        for (const Polygon& removed : part.removed)
+            layers.push_back({{curveOf(removed)}, false, 0, 1});
+        const Overlay overlay(layers);
+        parts.push_back(curvesOf(overlay.regions(
+            [](const LayerLabel& label) { return label.count > 0 && label.marks == 0; })));
+    }
+    return parts;
+}
+
+/// The curves of one wall.
+struct WallCurves {
+    std::vector<Polygon> curves;
+};
+
+std::vector<Segment2> edgesOf(std::span<const WallCurves> pieces,
+                              std::vector<std::size_t>& owners) {
+    std::vector<Segment2> edges;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        for (const Polygon& curve : pieces[i].curves)
+            forEachEdge(curve, [&](const Segment2& edge) {
+                edges.push_back(edge);
+                owners.push_back(i);
+            });
+    return edges;
+}
+
+/// Removes pieces that an earlier one covers corner by corner: mapped shapes may repeat by the
+/// thousand, and each corner would find all copies.
+void dropCopies(std::vector<WallCurves>& pieces) {
+    using Corners = std::vector<std::vector<std::pair<double, double>>>;
+    std::set<Corners> known;
+    std::erase_if(pieces, [&](const WallCurves& piece) {
+        Corners corners;
+        for (const Polygon& curve : piece.curves)
+            for (auto& list = corners.emplace_back(); const Point2 p : curve)
+                list.emplace_back(p.x, p.y);
+        return !known.insert(std::move(corners)).second;
+    });
+}
+
+/// Moves corners onto corners of earlier pieces, else onto edges of others, within kMeet.
+void letMeet(std::vector<WallCurves>& pieces, Budget& work) {
+    std::vector<std::size_t> owners;
+    const std::vector<Segment2> edges = edgesOf(pieces, owners);
+    const NearSegments search(edges, work);
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+        for (Polygon& curve : pieces[i].curves)
+            for (Point2& corner : curve) {
+                Point2 best = corner;
+                double apart = kMeet;
+                bool at_corner = false;
+                for (const std::size_t k : search.near(corner, kMeet)) {
+                    if (owners[k] == i) continue;
+                    for (const Point2 end : {edges[k].a, edges[k].b})
+                        if (owners[k] < i && distance(end, corner) <= (at_corner ? apart : kMeet)) {
+                            best = end;
+                            apart = distance(end, corner);
+                            at_corner = true;
+                        }
+                    const Point2 foot = nearestPoint(edges[k], corner);
+                    if (!at_corner && distance(foot, corner) <= apart) {
+                        best = foot;
+                        apart = distance(foot, corner);
+                    }
+                }
+                corner = best;
+            }
+}
+
+/// Returns true if the box touches one of the edges, or lies inside their outline.
+bool touches(const BuildingBox& box, std::span<const Segment2> edges, const NearSegments& search) {
+    const Vec2 u = box.length / 2 * box.along, v = box.width / 2 * perpendicular(box.along);
+    const Polygon corners{box.center - u - v, box.center + u - v, box.center + u + v,
+                          box.center - u + v};
+    bool touch = false;
+    forEachEdge(corners, [&](const Segment2& side) {
+        for (const std::size_t k : search.near(bounds(side), kTouch))
+            touch = touch || intersects(side, edges[k]) || distance(side.a, edges[k]) <= kTouch ||
+                    distance(edges[k].a, side) <= kTouch;
+    });
+    return touch;
+}
+
+/// Rounds corners to whole micrometres, merges those that are as near as rounding, and removes
+/// spikes that this creates.
+void tidy(Polygon& curve) {
+    Polygon kept;
+    const auto drop_spike = [&kept] {
+        while (kept.size() > 2 && distance(kept.back(), kept[kept.size() - 3]) <= kSameCorner)
+            kept.resize(kept.size() - 2);
+    };
+    for (const Point2 p : curve) {
+        const Point2 rounded = wholeMicrometres(p);
+        if (!kept.empty() && distance(kept.back(), rounded) <= kSameCorner) continue;
+        kept.push_back(rounded);
+        drop_spike();
+    }
+    while (kept.size() > 1 && distance(kept.front(), kept.back()) <= kSameCorner) kept.pop_back();
+    curve = std::move(kept);
+}
+
+/// Rounds the corners of regions as tidy(), and removes curves without area.
+void tidy(std::vector<Region>& regions) {
+    for (Region& region : regions) {
+        tidy(region.outline);
+        for (Polygon& hole : region.holes) tidy(hole);
+        std::erase_if(region.holes, [](const Polygon& hole) { return hole.size() < 3; });
+    }
+    std::erase_if(regions, [](const Region& region) { return region.outline.size() < 3; });
+}
+
+/// Sets the solids to the union of layers, with straight faces where walls meet.
+void unite(StoreyWalls& walls, std::span<const Layer> layers) {
+    walls.solids = united(layers);
+    const std::vector<Polygon> simple = simplified(curvesOf(walls.solids), kStraight);
+    auto next = simple.begin();
+    for (Region& solid : walls.solids) {
+        solid.outline = *next++;
+        for (Polygon& hole : solid.holes) hole = *next++;
+    }
+    tidy(walls.solids);
+}
+
+double heightOfMost(std::vector<std::pair<double, double>> tops) {
+    std::sort(tops.begin(), tops.end());
+    double all = 0, sum = 0;
+    for (const auto& [top, length] : tops) all += length;
+    for (const auto& [top, length] : tops)
+        if ((sum += length) >= all / 2) return top;
+    return 0;
+}
+
+}  // namespace
+
+std::vector<Region> areaOf(const BuildingSection& section) {
+    std::vector<Layer> layers;
+    for (const std::vector<Polygon>& part : partsOf(section)) layers.push_back(layerOf(part));
+    std::vector<Region> regions = united(layers);
+    tidy(regions);
+    return regions;
+}
+
+void addPieces(StoreyWalls& walls, std::span<const Polygon> pieces) {
+    std::vector<Layer> layers;
+    layers.reserve(walls.solids.size() + pieces.size());
+    for (const Region& solid : walls.solids) layers.push_back(layerOf(curvesOf(solid)));
+    for (const Polygon& piece : pieces) layers.push_back(layerOf({&piece, 1}));
+    unite(walls, layers);
+}
+
+std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
+    const double cut = building.storeys[storey].cut - kCornerTolerance;
+    const auto first =
+        std::lower_bound(building.storeys.begin(), building.storeys.end(), cut,
+                         [](const BuildingStorey& s, double height) { return s.cut < height; });
+    return static_cast<std::uint64_t>(first - building.storeys.begin());
+}
+
+StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) {
+    storey = storeyOfSections(building, storey);
+    StoreyWalls walls;
+    std::vector<WallCurves> pieces;
+    std::vector<std::pair<double, double>> tops, other_tops;
+    for (const BuildingWall& wall : building.walls) {
+        if (wall.storey != storey || wall.is_column) continue;
+        for (std::vector<Polygon>& part : partsOf(wall.section))
+            pieces.push_back({std::move(part)});
+        for (const Polygon& sheet : wall.section.sheets) {
+            if (sheet.empty()) continue;
+            Polygon line{wholeMicrometres(sheet.front())};
+            for (const Point2 p : sheet)
+                if (distance(p, line.back()) > kSameCorner) line.push_back(wholeMicrometres(p));
+            for (std::size_t i = 1; i < line.size(); ++i)
+                walls.sheets.push_back({line[i - 1], line[i]});
+        }
+        (wall.is_inside ? tops : other_tops).emplace_back(wall.box.top, wall.box.length);
+    }
+    std::vector<std::size_t> owners;
+    const std::vector<Segment2> edges = edgesOf(pieces, owners);
+    const NearSegments search(edges, work);
+    for (const BuildingWall& wall : building.walls) {
+        if (wall.storey != storey || !wall.is_column) continue;
+        if (!touches(wall.box, edges, search))
+            walls.columns.push_back(wall.box);
+        else
+            for (std::vector<Polygon>& part : partsOf(wall.section))
+                pieces.push_back({std::move(part)});
+    }
+    walls.top = heightOfMost(std::move(tops.empty() ? other_tops : tops));
+    dropCopies(pieces);
+    letMeet(pieces, work);
+    std::vector<Layer> layers;
+    layers.reserve(pieces.size());
+    for (const WallCurves& piece : pieces) layers.push_back(layerOf(piece.curves));
+    unite(walls, layers);
+    return walls;
+}
+
+}  // namespace ispace

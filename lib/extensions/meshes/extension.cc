@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/meshes/meshes.h"
+
+namespace ispace::extension {
+
+Extension meshes() { return {.name = "meshes", .add = addMeshes}; }
+
+}  // namespace ispace::extension
