@@ -12,6 +12,7 @@ namespace ispace {
 const Extensions& extensions() {
     static const std::vector<Extension> built = {
         // clang-format off
+        ISPACE_ADVICE
         ISPACE_APPLIANCES
         ISPACE_BUMPERS
         ISPACE_CAD

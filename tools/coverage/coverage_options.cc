@@ -22,7 +22,6 @@ std::vector<std::string> formatNames() {
     return names;
 }
 
-constexpr int kSuggestions = 5, kMaxSuggestions = 7;  // one of each kind
 constexpr int kMaxFailures = 8;
 
 /// Options that apply to the map alone.
@@ -136,10 +135,11 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
     std::vector<const char*> single = {
         "--report",   "--material", "--prices",   "--title",   "--project",    "--client",
-        "--author",   "--logo",     "--paper",    "--suggest", "--time-limit", "--compare",
+        "--author",   "--logo",     "--paper",    "--compare",
         "--run",      "--perturb",  "--failures", "--crowd",   "--facing",     "--privacy",
         "--presence", "--path",     "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
+    for (const std::string& option : o.groups->options()) single.push_back(option.c_str());
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
 }
@@ -148,8 +148,6 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
     for (const char* option : {"--shard", "--resume", "--cache"})
         if (line.given(option))
             throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
-    if (o.time_limit && !o.suggestions)
-        throw UsageError("--time-limit is about --suggest: give that, too");
     if (o.crowd && o.crowd->of == Robustness::CrowdOf::Run && o.run.empty())
         throw UsageError("--crowd run takes people of a record: give --run DIR");
     checkProduct(line, o, to);
@@ -166,15 +164,13 @@ void checkReport(const CoverageToolOptions& o) {
 
 CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     CoverageToolOptions o;
+    o.groups = std::make_shared<CoverageExtensions>(extensions().coverage());
     Words words;
     CommandLine line("coverage", "[ENV] [LAYOUT]",
                      "Measure and draw the floor that sensors cover. Without LAYOUT read it from "
                      "stdin unless ENV holds sensors with a pose. The report goes to stdout.");
     line.example("coverage room.env layout.3dm -o map.png",
                  "print the covered floor by cells and exactly, and draw it");
-    line.example("coverage room.env layout.3dm --require 90% --suggest 3",
-                 "exit with 3 unless the sensors cover 90 % of the room, and name three changes "
-                 "that help");
     line.operands(o.operands, 2);
     line.flag("--json", o.json, "the report as JSON", Enters::Nothing);
     line.file("--report", "FILE", o.report,
@@ -226,17 +222,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "second: of the run that simrun --record wrote to DIR, or of N people who wander for TIME "
         "(default 10min)",
         Enters::Nothing);
-    line.countOr(
-        "--suggest", o.suggestions, kSuggestions, 1, kMaxSuggestions,
-        "report up to N changes that would help: a sensor to add, turn, move, replace or "
-        "remove, furniture to move, and with --require, --facing or --privacy the changes that "
-        "meet all; each with its gain and its command",
-        Enters::Nothing);
-    constexpr double kMaxWait = 1e9;
-    line.duration("--time-limit", o.time_limit, 0, kMaxWait,
-                  "end the search of --suggest with the best so far after this time (500ms, 2s, "
-                  "1min); the report then says so",
-                  Enters::Nothing);
+    o.groups->declare(line);
     line.parsed(
         "--perturb", "M,DEG", [&o](const std::string& text) { o.perturb = parseTolerance(text); },
         "report how coverage and requirements fall if sensors are mounted up to M and DEG off "
@@ -287,8 +273,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addStoreyOption(line, o.rules, "default: all storeys");
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.essential({"--version",    "--json",    "--report",  "--cell",    "--height", "--plane",
-                    "--density",    "--zone",    "--require", "--compare", "--run",    "--suggest",
-                    "--time-limit", "--to",      "--width",   "--color",   "--storey", "--output",
+                    "--density",    "--zone",    "--require", "--compare", "--run",    "--to",      "--width",   "--color",   "--storey", "--output",
                     "--quiet",      "--threads", "--seed"});
     line.parse(argc, argv);
 
@@ -328,6 +313,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkOne(line, o, words.to);
     else
         checkBatch(line, o);
+    o.groups->take(line);
     o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
     checkReportOptions(o.page, o.report);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/batch.h"
 #include "cli/common_options.h"
+#include "cli/coverage_group.h"
 #include "cli/option_group.h"
 #include "cli/presence_paths.h"
 #include "cli/report_options.h"
@@ -39,8 +41,6 @@ struct CoverageToolOptions {
     std::string other;               ///< LAYOUT to compare with; "": no comparison
     bool json = false;
     std::string report;                ///< file for the report as JSON besides stdout; "": no file
-    std::optional<int> suggestions;    ///< number of changes to suggest
-    std::optional<double> time_limit;  ///< of the search for them, seconds
     std::optional<MountingTolerance> perturb;  ///< of mounting
     int failures = 0;                          ///< number of sensors that fail; 0: not told
     std::optional<CrowdChoice> crowd;
@@ -57,6 +57,7 @@ struct CoverageToolOptions {
     SceneRules rules;
     std::string history_line;
     ReportWords page;    ///< of --report and --material
+    std::shared_ptr<CoverageExtensions> groups;  ///< of extensions
     ExtensionTask task;  ///< instead of a report; empty: none
 };
 

@@ -38,7 +38,6 @@
 #include "site/coupling.h"
 #include "site/site_presence.h"
 #include "site/site_robustness.h"
-#include "site/site_suggestions.h"
 
 namespace ispace {
 
@@ -58,12 +57,16 @@ const Storey& storeyOf(const SiteInput& input, std::size_t room) {
 
 SiteParts SiteResults::parts(const SiteScene& building) const {
     SiteParts parts;
+    parts.storeys.resize(coverage.storeys.size());
     addRules(parts, building, coverage, rules);
     if (objectives_sum) addSections<ObjectivesSection>(parts, objectives, *objectives_sum);
     if (robustness) parts.sum.push_back(std::make_shared<RobustnessSection>(*robustness));
     if (run) addRun(parts, building, *run);
     if (presence_sum) addSections<PresenceSection>(parts, presence, *presence_sum);
-    if (advice) parts.sum.push_back(std::make_shared<AdviceSection>(*advice));
+    for (std::size_t i = 0; i < found.parts.storeys.size(); ++i)
+        parts.storeys[i].insert(parts.storeys[i].end(), found.parts.storeys[i].begin(),
+                                found.parts.storeys[i].end());
+    parts.sum.insert(parts.sum.end(), found.parts.sum.begin(), found.parts.sum.end());
     return parts;
 }
 
@@ -340,24 +343,6 @@ void measureRobustness(const CoverageToolOptions& options, const SiteInput& inpu
     robustness.mounting =
         perturbSite(input.building, coverage, options.measure, *options.perturb, kSamples,
                     options.common.seed, options.requirements, *progress);
-}
-
-void suggest(const CoverageToolOptions& options, const SiteInput& input, SiteResults& results,
-             int& signal) {
-    if (!options.suggestions) return;
-    SuggestOptions wanted{.most = static_cast<std::size_t>(*options.suggestions),
-                          .measure = options.measure,
-                          .requirements = options.requirements,
-                          .facing = options.facing,
-                          .privacy = options.privacy};
-    std::erase_if(wanted.facing, [](const FacingRule& rule) { return !rule.required; });
-    SearchWatch watch(makeProgress("coverage", options.common.progress, options.common.quiet),
-                      options.time_limit);
-    results.advice =
-        adviceFor(input.building, results.coverage, results.rules, wanted, shippedDevices(), watch);
-    results.advice->command = editCommand(input.named, options.rules);
-    results.advice->is_cut = watch.stopped();
-    signal = watch.signal();
 }
 
 namespace {

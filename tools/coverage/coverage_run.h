@@ -9,12 +9,12 @@
 
 #include "arrange/tried_pose.h"
 #include "cli/batch.h"
+#include "cli/coverage_group.h"
 #include "cli/site_operands.h"
 #include "coverage/coverage_options.h"
 #include "coverage/presence.h"
 #include "coverage/robustness.h"
 #include "report/objective_report.h"
-#include "report/suggestion_report.h"
 #include "site/site_coverage.h"
 #include "site/site_rules.h"
 #include "site/site_run_coverage.h"
@@ -33,7 +33,7 @@ struct SiteResults {
     std::vector<Presence> presence;
     std::optional<Presence> presence_sum;
     std::optional<Robustness> robustness;
-    std::optional<Advice> advice;
+    CoverageFindings found;  ///< of extensions
 
     /// Returns the parts of a report that were asked for. They refer to the results.
     [[nodiscard]] SiteParts parts(const SiteScene& building) const;
@@ -72,11 +72,6 @@ void measureRules(const CoverageToolOptions& options, const SiteInput& input, Si
 /// CrowdFloor
 void measureRobustness(const CoverageToolOptions& options, const SiteInput& input,
                        SiteResults& results);
-
-/// Finds the changes of --suggest. \param signal receives the signal that ended the search early;
-/// afterwards TERM and INT are ignored: write what is there, and endBySignal()
-void suggest(const CoverageToolOptions& options, const SiteInput& input, SiteResults& results,
-             int& signal);
 
 /// Writes -o: a file of a room, a page of all storeys, or a file for each. \pre there is a format
 void writeProducts(const CoverageToolOptions& options, const SiteInput& input,

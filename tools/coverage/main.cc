@@ -30,7 +30,7 @@ using namespace ispace;
 
 SiteInput readInput(const CoverageToolOptions& options) {
     const std::vector<std::string> operands = operandsOf(options);
-    if (!options.report.empty() || options.suggestions)
+    if (!options.report.empty() || options.groups->isAsked())
         keepFreedMemory();  // of one picture or trial for the next
     else
         keepFreedMemory(operands);
@@ -112,9 +112,10 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     }
     measureRobustness(options, input, results);
     measureRules(options, input, results);
-    // Last: once a signal has ended it, only the results are written.
-    int signal = 0;
-    suggest(options, input, results, signal);
+    // Last: once a signal has ended a search, only the results are written.
+    options.groups->measure({input, results.coverage, options.measure, options.requirements,
+                             options.common, options.rules},
+                            results.found);
     const std::vector<JunitCase> verdicts = judgeAll(options, input.building, results);
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
     if (const std::string text = writeMaterialOf(options.page, input.rooms()); !text.empty())
@@ -122,7 +123,7 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     const SiteParts parts = results.parts(input.building);
     writeAll("-", options.json ? siteCoverageJson(input.building, results.coverage, parts)
                                : siteCoverageText(input.building, results.coverage, parts));
-    if (signal != 0) endBySignal(signal);
+    if (results.found.signal != 0) endBySignal(results.found.signal);
     std::size_t sensors = 0, cells = 0;
     for (const Coverage& room : results.coverage.storeys) {
         sensors += room.report.sensors.size();

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "base/message.h"
-#include "report/suggestion_report.h"
+#include "extensions/advice/suggestion_report.h"
 
 namespace ispace {
 

@@ -67,7 +67,7 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
         ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
     line_.essential({"--version", "--clock", "--dt", "--until", "--noise", "--script", "--record",
-                     "--report", "--suggest", "--replay", "--listen", "--storey", "--output",
+                     "--report", "--replay", "--listen", "--storey", "--output",
                      "--quiet", "--threads", "--seed"});
     line_.parse(argc, argv);
     options_.task =
@@ -115,13 +115,8 @@ void SimrunCommand::declareRun() {
                "ways of robots and people and the floor that sensors see (.html, .pdf), or as JSON "
                "(.json)",
                Enters::Nothing);
-    constexpr int kSuggestions = 3;  // one of each kind
-    line_.countOr(
-        "--suggest", o.suggestions, kSuggestions, 1, kSuggestions,
-        "with --record: at the end of the run report up to N changes of a sensor, to add, "
-        "turn or move, after which robots and people would have been seen longer, each "
-        "with its gain and its command",
-        Enters::Nothing);
+    o.records = std::make_shared<RecordExtensions>(extensions().records());
+    o.records->declare(line_);
     line_.switchFlag("--record-readings", "--no-record-readings", o.records_readings,
                      "record the readings of sensors (default)",
                      "leave them out: events and states remain", Enters::Nothing);
@@ -184,8 +179,7 @@ void SimrunCommand::declareReplay() {
 
 void SimrunCommand::checkReplay() const {
     const SimrunOptions& o = options_;
-    if (o.suggestions && o.record.empty())
-        throw UsageError("--suggest is about a recorded run: give --record DIR");
+    o.records->take(line_);
     if (line_.given("--report")) {
         if (o.record.empty())
             throw UsageError("--report is about a recorded run: give --record DIR");

@@ -9,6 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "cli/option_group.h"
+#include "cli/record_group.h"
 #include "cli/run_bridge.h"
 #include "cli/run_judge.h"
 #include "server/server.h"
@@ -35,7 +36,7 @@ struct SimrunOptions {
     bool noise = false;
     std::string script;                                     ///< "" without; "-" is stdin
     std::string report;                                     ///< page for people; "" without
-    std::optional<int> suggestions;                         ///< at most so many; empty: none
+    std::shared_ptr<const RecordExtensions> records;        ///< of extensions
     std::string record;                                     ///< folder; "" without
     std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes
     std::string replay;                                     ///< folder; "" without

@@ -14,7 +14,5 @@ namespace ispace {
 /// \param command as in histories
 std::string reportFile(const SimrunOptions& options, const SiteInput& input, const RunJudge& judge,
                        const std::string& command);
-/// Returns the lines of --suggest, in the form of coverage --suggest. \pre the record is complete
-std::string suggestionsText(const SimrunOptions& options, const SiteInput& input);
 
 }  // namespace ispace

@@ -575,7 +575,7 @@ void endingAtOnce(const std::function<bool()>& is_busy, JunitFile& junit,
 
 /// Waits for the files of the record, if they are read.
 void completeRecords(const SimrunOptions& options, std::span<const RunRoom> rooms) {
-    if (options.report.empty() && !options.suggestions) return;
+    if (options.report.empty() && !options.records->isAsked()) return;
     for (const RunRoom& room : rooms)
         for (const std::string& file : Recorder::filesIn(folderOf(options.record, room)))
             completeOutput(file);
@@ -630,7 +630,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
         completeRecords(options, rooms);
         if (!options.report.empty())
             writeAll(options.report, reportFile(options, site.input, *judge, site.history.back()));
-        if (options.suggestions) writeAll("-", suggestionsText(options, site.input));
+        options.records->conclude({site.input, options.record, options.common, options.rules});
         judge->report(options.record);
         conclude(*judge, options, site.input.environment_operand, junit);
     };

@@ -331,6 +331,13 @@ std::string editCommand(const std::vector<std::string>& operands, const SceneRul
     return command + readingText(rules);
 }
 
+std::string commandOf(std::string command, std::span<const Edit> edits) {
+    for (const Edit& edit : edits)
+        command += ' ' + optionOf(edit.kind) + ' ' + shellQuote(edit.text);
+    return command + " -o changed.env";
+}
+
+
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without) {
     line.texts(
         "--storey", "ID|GLOB", rules.storeys.words,

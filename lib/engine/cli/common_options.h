@@ -132,6 +132,9 @@ std::string readingText(const SceneRules& rules);
 /// Returns the beginning of an envc command that changes the scene of these operands: "envc
 /// room.env layout.3dm --storey upper".
 std::string editCommand(const std::vector<std::string>& operands, const SceneRules& rules);
+/// Returns a command of envc with further edits, which writes the changed scene: "envc room.env
+/// layout.3dm --rotate l1:35 -o changed.env".
+std::string commandOf(std::string command, std::span<const Edit> edits);
 
 /// `--storey`. \param without the effect of leaving it out, for help
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without);

@@ -15,6 +15,8 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
         for (const ToolOptions& row : each.options)
             options_.push_back({each.name, row.tool, row.make});
         if (each.objective != nullptr) objectives_.push_back({each.name, each.objective});
+        if (each.coverage != nullptr) coverage_.push_back({each.name, each.coverage});
+        if (each.record != nullptr) records_.push_back(each.record);
         if (each.judge != nullptr) judges_.push_back(each.judge);
         if (each.bridge != nullptr) bridges_.push_back({each.name, each.bridge});
         if (each.role != nullptr) roles_.push_back(each.role);

@@ -16,8 +16,10 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/coverage_group.h"
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
+#include "cli/record_group.h"
 #include "cli/run_bridge.h"
 #include "cli/run_judge.h"
 #include "server/client_role.h"
@@ -38,6 +40,8 @@ struct Extension {
     void (*add)() = nullptr;
     std::vector<ToolOptions> options = {};                     ///< at most one for each tool
     std::unique_ptr<ObjectiveGroup> (*objective)() = nullptr;  ///< of `arrange --objective`
+    std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;      ///< of reports of `coverage`
+    MakeRecordGroup record = nullptr;                            ///< of records of `simrun`
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;          ///< of runs of `simrun`
     std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;        ///< another protocol of a run
     MakeRoleService role = nullptr;                            ///< requests of the protocol
@@ -62,6 +66,8 @@ class Extensions {
     [[nodiscard]] const std::vector<std::string_view>& names() const { return names_; }
     [[nodiscard]] const std::vector<ToolExtension>& options() const { return options_; }
     [[nodiscard]] const std::vector<ObjectiveRow>& objectives() const { return objectives_; }
+    [[nodiscard]] const std::vector<CoverageRow>& coverage() const { return coverage_; }
+    [[nodiscard]] const std::vector<MakeRecordGroup>& records() const { return records_; }
     [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
     [[nodiscard]] const std::vector<BridgeRow>& bridges() const { return bridges_; }
     [[nodiscard]] const std::vector<MakeRoleService>& roles() const { return roles_; }
@@ -70,6 +76,8 @@ class Extensions {
     std::vector<std::string_view> names_;
     std::vector<ToolExtension> options_;
     std::vector<ObjectiveRow> objectives_;
+    std::vector<CoverageRow> coverage_;
+    std::vector<MakeRecordGroup> records_;
     std::vector<MakeJudge> judges_;
     std::vector<BridgeRow> bridges_;
     std::vector<MakeRoleService> roles_;

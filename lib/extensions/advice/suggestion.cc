@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/suggestion.h"
+#include "extensions/advice/suggestion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "arrange/adviser.h"
+#include "extensions/advice/adviser.h"
 #include "arrange/arrange.h"
-#include "arrange/coarse_sight.h"
+#include "extensions/advice/coarse_sight.h"
 #include "arrange/floor_tiles.h"
 #include "arrange/placement_rules.h"
 #include "arrange/refine.h"

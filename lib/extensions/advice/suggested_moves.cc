@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/suggested_moves.h"
+#include "extensions/advice/suggested_moves.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/coarse_sight.h"
+#include "extensions/advice/coarse_sight.h"
 
 #include <gtest/gtest.h>
 

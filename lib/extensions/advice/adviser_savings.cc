@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "arrange/adviser.h"
-#include "arrange/coarse_sight.h"
+#include "extensions/advice/adviser.h"
+#include "extensions/advice/coarse_sight.h"
 #include "arrange/placement_rules.h"
-#include "arrange/suggested_moves.h"
+#include "extensions/advice/suggested_moves.h"
 #include "base/number.h"
 #include "env/element_schemas.h"
 #include "scene/findings/findings.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/suggestion.h"
+#include "extensions/advice/suggestion.h"
 
 #include <gtest/gtest.h>
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "arrange/arrange.h"
-#include "arrange/coarse_sight.h"
-#include "arrange/suggestion.h"
+#include "extensions/advice/coarse_sight.h"
+#include "extensions/advice/suggestion.h"
 #include "coverage/exact_shares.h"
 #include "coverage/facing_meter.h"
 #include "coverage/private_floor.h"

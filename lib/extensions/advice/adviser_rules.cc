@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "arrange/adviser.h"
+#include "extensions/advice/adviser.h"
 #include "coverage/camera_rules.h"
 #include "coverage/private_floor.h"
 #include "env/zone.h"

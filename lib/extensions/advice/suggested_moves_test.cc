@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/suggested_moves.h"
+#include "extensions/advice/suggested_moves.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "arrange/adviser.h"
+#include "extensions/advice/adviser.h"
 #include "support/test_arrange.h"
 
 namespace ispace {

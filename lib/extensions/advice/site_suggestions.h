@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "arrange/suggestion.h"
-#include "report/suggestion_report.h"
+#include "extensions/advice/suggestion.h"
+#include "extensions/advice/suggestion_report.h"
 #include "site/site_coverage.h"
 #include "site/site_rules.h"
 #include "site/site_scene.h"
@@ -43,10 +43,8 @@ std::vector<Suggestion> suggestForSite(const SiteScene& building, const SiteCove
                                        const SuggestOptions& options, Progress& progress);
 
 /// Finds suggestForSite(), of a room alone suggestChanges(), and whether they fall short of the
-/// rules, of a room alone also of the requirements. \param rules measured, by storey
-/// \param devices that may stand in for sensors
+/// rules, of a room alone also of the requirements. \param devices that may stand in for sensors
 Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
-                 std::span<const CameraRules> rules, const SuggestOptions& options,
-                 const DeviceCatalogue& devices, Progress& progress);
+                 const SuggestOptions& options, const DeviceCatalogue& devices, Progress& progress);
 
 }  // namespace ispace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "site/site_suggestions.h"
+#include "extensions/advice/site_suggestions.h"
 
 #include <gtest/gtest.h>
 

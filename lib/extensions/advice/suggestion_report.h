@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "arrange/suggestion.h"
+#include "extensions/advice/suggestion.h"
 #include "report/report_section.h"
 
 namespace ispace {
@@ -25,10 +24,6 @@ constexpr const char* kShortAdvice =
 
 /// Told with Advice::is_cut.
 constexpr const char* kCutAdvice = "cut short: other changes were not tried, and may help more";
-
-/// Returns a command of envc with further edits, which writes the changed scene: "envc room.env
-/// layout.3dm --rotate l1:35 -o changed.env".
-std::string commandOf(std::string command, std::span<const Edit> edits);
 
 /// Returns the gain of a change: "+3.20 m2, to 85.71%; saves 120", and
 /// for requirements "; 1.20 m2 less are missing" or "; meets all requirements".

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "arrange/suggestion.h"
+#include "extensions/advice/suggestion.h"
 #include "base/cell_set.h"
 #include "coverage/coverage.h"
 #include "coverage/target.h"

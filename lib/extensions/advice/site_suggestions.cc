@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "site/site_suggestions.h"
+#include "extensions/advice/site_suggestions.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -195,8 +195,8 @@ std::vector<Suggestion> suggestForSite(const SiteScene& building, const SiteCove
 }
 
 Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
-                 std::span<const CameraRules> rules, const SuggestOptions& options,
-                 const DeviceCatalogue& devices, Progress& progress) {
+                 const SuggestOptions& options, const DeviceCatalogue& devices,
+                 Progress& progress) {
     Advice advice;
     double missing = 0;
     if (building.isRoomAlone()) {
@@ -208,7 +208,9 @@ Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
         SiteScene equipped = building;
         equipped.devices = devices;
         advice.suggestions = suggestForSite(equipped, coverage, options, progress);
-        missing = missingFloor(rules);
+        if (!options.facing.empty() || !options.privacy.empty())
+            missing = missingFloor(measureSiteRules(building, coverage, options.measure,
+                                                    options.facing, options.privacy));
     }
     advice.is_short =
         missing > 0 && (advice.suggestions.empty() ||

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/suggestion_report.h"
+#include "extensions/advice/suggestion_report.h"
 
 #include "base/message.h"
 #include "base/number.h"
+#include "cli/common_options.h"
 #include "report/coverage_report.h"
 
 namespace ispace {
@@ -20,12 +21,6 @@ std::string gainText(const Suggestion& suggestion) {
     else if (suggestion.required > 0)
         text += "; " + formatFixed(suggestion.required, 2) + " m2 less are missing";
     return text;
-}
-
-std::string commandOf(std::string command, std::span<const Edit> edits) {
-    for (const Edit& edit : edits)
-        command += ' ' + optionOf(edit.kind) + ' ' + shellQuote(edit.text);
-    return command + " -o changed.env";
 }
 
 void AdviceSection::writeJson(JsonWriter& json) const {

@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "arrange/suggestion.h"
+#include "extensions/advice/suggestion.h"
 #include "base/cell_set.h"
 #include "coverage/counted_cells.h"
 #include "coverage/plane_cells.h"

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a folder of lib/extensions adds to the reports of coverage: options, and what they find out
+// about a measured site. See cli/extension.h.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/common_options.h"
+#include "cli/site_operands.h"
+#include "coverage/coverage.h"
+#include "coverage/requirement.h"
+#include "site/site_coverage.h"
+
+namespace ispace {
+
+/// A site with its coverage, and what the tool's own options ask for.
+struct MeasuredSite {
+    const SiteInput& input;
+    const SiteCoverage& coverage;
+    const CoverageOptions& how;
+    std::span<const Requirement> requirements;
+    const CommonOptions& common;
+    const SceneRules& rules;
+};
+
+/// What groups find out.
+struct CoverageFindings {
+    SiteParts parts = {};  ///< sections of the report; they live as long as their groups
+    /// The signal that ended a search early, 0 without. TERM and INT are ignored afterwards: write
+    /// what is there, and endBySignal().
+    int signal = 0;
+};
+
+/// The options of one extension, and their values: an object is made for each command line and
+/// kept until its report is written.
+class CoverageGroup {
+  public:
+    virtual ~CoverageGroup() = default;
+    /// Declares the options, bound to members, behind those of requirements.
+    virtual void declare(CommandLine& line) = 0;
+    /// Checks the options with each other and with those of the tool, and takes what these say
+    /// (CommandLine::valuesOf). Opens no file. \throws UsageError
+    virtual void take(const CommandLine& line) = 0;
+    [[nodiscard]] virtual bool isAsked() const = 0;
+    /// Adds sections to the findings. \pre isAsked() \throws UsageError for names that the site
+    /// lacks
+    virtual void measure(const MeasuredSite& site, CoverageFindings& findings) = 0;
+};
+
+/// A row of Extensions, see cli/extension.h.
+struct CoverageRow {
+    std::string_view extension;
+    std::unique_ptr<CoverageGroup> (*make)();
+};
+
+/// The groups that extensions add to one command line.
+class CoverageExtensions {
+  public:
+    /// \param rows in the order of `--help` and of reports
+    explicit CoverageExtensions(std::span<const CoverageRow> rows);
+    void declare(CommandLine& line);
+    /// As those of CoverageGroup, for all of them.
+    void take(const CommandLine& line) const;
+    [[nodiscard]] bool isAsked() const;
+    void measure(const MeasuredSite& site, CoverageFindings& findings) const;
+    /// Returns the names of the options ("--suggest").
+    [[nodiscard]] const std::vector<std::string>& options() const { return options_; }
+
+  private:
+    std::vector<std::shared_ptr<CoverageGroup>> groups_;
+    std::vector<std::string> options_;
+};
+
+}  // namespace ispace

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a folder of lib/extensions makes of the record of a run at its end: options of simrun, and
+// the work that they ask for. See cli/extension.h.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/common_options.h"
+#include "cli/site_operands.h"
+
+namespace ispace {
+
+/// A run that has ended, and its record.
+struct RecordedRun {
+    const SiteInput& input;
+    const std::string& record;  ///< its folder
+    const CommonOptions& common;
+    const SceneRules& rules;
+};
+
+/// The options of one extension, and their values: an object is made for each command line.
+class RecordGroup {
+  public:
+    virtual ~RecordGroup() = default;
+    /// Declares the options, bound to members, behind that of reports.
+    virtual void declare(CommandLine& line) = 0;
+    /// Checks the options; opens no file. \throws UsageError, also without a record
+    virtual void take(const CommandLine& line) = 0;
+    [[nodiscard]] virtual bool isAsked() const = 0;
+    /// Prints or writes what was asked for. \pre isAsked(); the files of the record are complete
+    virtual void conclude(const RecordedRun& run) const = 0;
+};
+
+/// A row of Extensions, see cli/extension.h.
+using MakeRecordGroup = std::unique_ptr<RecordGroup> (*)();
+
+/// The groups that extensions add to one command line.
+class RecordExtensions {
+  public:
+    /// \param rows in the order of `--help`
+    explicit RecordExtensions(std::span<const MakeRecordGroup> rows);
+    void declare(CommandLine& line) const;
+    /// As those of RecordGroup, for all of them.
+    void take(const CommandLine& line) const;
+    [[nodiscard]] bool isAsked() const;
+    void conclude(const RecordedRun& run) const;
+
+  private:
+    std::vector<std::shared_ptr<RecordGroup>> groups_;
+};
+
+}  // namespace ispace
