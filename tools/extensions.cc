@@ -38,6 +38,7 @@ const Extensions& extensions() {
         ISPACE_PROJECTION
         ISPACE_RADIOS
         ISPACE_REALITY
+        ISPACE_ROBUSTNESS
         ISPACE_TRACKING
         ISPACE_WIRE
         ISPACE_WEB

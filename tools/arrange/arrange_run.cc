@@ -22,7 +22,7 @@
 #include "scene/sensor/ultrasound.h"
 #include "scene/sensor_spec.h"
 #include "site/arranged_site.h"
-#include "site/site_robustness.h"
+#include "site/storey_people.h"
 
 namespace ispace {
 

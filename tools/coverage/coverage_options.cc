@@ -22,8 +22,6 @@ std::vector<std::string> formatNames() {
     return names;
 }
 
-constexpr int kMaxFailures = 8;
-
 /// Options that apply to the map alone.
 constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
                                        "--fans", "--trace", "--speeds"};
@@ -64,18 +62,6 @@ std::vector<double> parseSpeeds(const std::string& text) {
     }
     if (speeds.empty()) throw UsageError("no speeds, wanted such as 30%,60%,100%");
     return speeds;
-}
-
-/// Parses `N`, `scene` or `run`.
-CrowdChoice parseCrowd(const std::string& text) {
-    constexpr int kMaxPeople = 10'000;
-    if (text == "scene") return {Robustness::CrowdOf::Scene};
-    if (text == "run") return {Robustness::CrowdOf::Run};
-    const auto people = parseInteger(text);
-    if (!people || *people < 0 || *people > kMaxPeople)
-        throw UsageError('`' + text + "` is not a number of people up to " +
-                         std::to_string(kMaxPeople) + ", scene or run");
-    return {Robustness::CrowdOf::Random, static_cast<int>(*people)};
 }
 
 void addMeasureOptions(CommandLine& line, CoverageOptions& measure, Words& words) {
@@ -133,11 +119,10 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {
-        "--report",   "--material", "--prices",   "--title",   "--project",    "--client",
-        "--author",   "--logo",     "--paper",    "--compare",
-        "--run",      "--perturb",  "--failures", "--crowd",   "--facing",     "--privacy",
-        "--presence", "--path",     "--localise"};
+    std::vector<const char*> single = {"--report",  "--material", "--prices", "--title",
+                                       "--project", "--client",   "--author", "--logo",
+                                       "--paper",   "--compare",  "--run",    "--facing",
+                                       "--privacy", "--presence", "--path",   "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     for (const std::string& option : o.groups->options()) single.push_back(option.c_str());
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
@@ -148,8 +133,6 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
     for (const char* option : {"--shard", "--resume", "--cache"})
         if (line.given(option))
             throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
-    if (o.crowd && o.crowd->of == Robustness::CrowdOf::Run && o.run.empty())
-        throw UsageError("--crowd run takes people of a record: give --run DIR");
     checkProduct(line, o, to);
 }
 
@@ -223,19 +206,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         "(default 10min)",
         Enters::Nothing);
     o.groups->declare(line);
-    line.parsed(
-        "--perturb", "M,DEG", [&o](const std::string& text) { o.perturb = parseTolerance(text); },
-        "report how coverage and requirements fall if sensors are mounted up to M and DEG off "
-        "their poses, as in 5cm,3deg: 100 random mountings",
-        Enters::Nothing);
-    line.count("--failures", "K", o.failures, 1, kMaxFailures,
-               "report coverage and requirements without the K sensors that cost most",
-               Enters::Nothing);
-    line.parsed(
-        "--crowd", "N|scene|run", [&o](const std::string& text) { o.crowd = parseCrowd(text); },
-        "report coverage and requirements with people in the way of sight: N at random positions, "
-        "100 times; those of the scene; those of --run DIR at 100 moments",
-        Enters::Nothing);
     line.texts("--path", "FROM,TO", words.paths,
                "report the way between these two zones, over free floor, that sensors see for the "
                "shortest length, and draw it",
@@ -272,9 +242,9 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addSceneRules(line, o.rules);
     addStoreyOption(line, o.rules, "default: all storeys");
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
-    line.essential({"--version",    "--json",    "--report",  "--cell",    "--height", "--plane",
-                    "--density",    "--zone",    "--require", "--compare", "--run",    "--to",      "--width",   "--color",   "--storey", "--output",
-                    "--quiet",      "--threads", "--seed"});
+    line.essential({"--version", "--json", "--report", "--cell", "--height", "--plane", "--density",
+                    "--zone", "--require", "--compare", "--run", "--to", "--width", "--color",
+                    "--storey", "--output", "--quiet", "--threads", "--seed"});
     line.parse(argc, argv);
 
     o.task = tool_extensions.task(line, {o.common, o.rules, o.operands});

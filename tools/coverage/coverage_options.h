@@ -15,18 +15,10 @@
 #include "coverage/camera_rules.h"
 #include "coverage/presence_requirement.h"
 #include "coverage/requirement.h"
-#include "coverage/robustness.h"
 #include "report/coverage_formats.h"
 #include "report/map/map.h"
-#include "report/robustness_report.h"
 
 namespace ispace {
-
-/// People among whom coverage is reported, too.
-struct CrowdChoice {
-    Robustness::CrowdOf of = Robustness::CrowdOf::Random;
-    int people = 0;  ///< of Random
-};
 
 struct CoverageToolOptions {
     CommonOptions common;
@@ -40,10 +32,7 @@ struct CoverageToolOptions {
     BatchOptions batch;              ///< a list of scenes to report on
     std::string other;               ///< LAYOUT to compare with; "": no comparison
     bool json = false;
-    std::string report;                ///< file for the report as JSON besides stdout; "": no file
-    std::optional<MountingTolerance> perturb;  ///< of mounting
-    int failures = 0;                          ///< number of sensors that fail; 0: not told
-    std::optional<CrowdChoice> crowd;
+    std::string report;  ///< file for the report as JSON besides stdout; "": no file
     std::vector<FacingRule> facing;
     std::vector<PrivacyRule> privacy;
     std::vector<PathChoice> paths;           ///< of intruders
@@ -56,9 +45,9 @@ struct CoverageToolOptions {
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;
     std::string history_line;
-    ReportWords page;    ///< of --report and --material
+    ReportWords page;                            ///< of --report and --material
     std::shared_ptr<CoverageExtensions> groups;  ///< of extensions
-    ExtensionTask task;  ///< instead of a report; empty: none
+    ExtensionTask task;                          ///< instead of a report; empty: none
 };
 
 /// Opens no file. \throws UsageError, TextRequested

@@ -37,14 +37,10 @@
 #include "scene/sensor/ultrasound.h"
 #include "site/coupling.h"
 #include "site/site_presence.h"
-#include "site/site_robustness.h"
 
 namespace ispace {
 
 namespace {
-
-/// Random mountings and crowds of --perturb and --crowd.
-constexpr int kSamples = 100;
 
 /// Seconds; most layouts are measured in less.
 constexpr double kQuick = 0.5;
@@ -60,13 +56,11 @@ SiteParts SiteResults::parts(const SiteScene& building) const {
     parts.storeys.resize(coverage.storeys.size());
     addRules(parts, building, coverage, rules);
     if (objectives_sum) addSections<ObjectivesSection>(parts, objectives, *objectives_sum);
-    if (robustness) parts.sum.push_back(std::make_shared<RobustnessSection>(*robustness));
     if (run) addRun(parts, building, *run);
     if (presence_sum) addSections<PresenceSection>(parts, presence, *presence_sum);
     for (std::size_t i = 0; i < found.parts.storeys.size(); ++i)
-        parts.storeys[i].insert(parts.storeys[i].end(), found.parts.storeys[i].begin(),
-                                found.parts.storeys[i].end());
-    parts.sum.insert(parts.sum.end(), found.parts.sum.begin(), found.parts.sum.end());
+        join(parts.storeys[i], found.parts.storeys[i]);
+    join(parts.sum, found.parts.sum);
     return parts;
 }
 
@@ -278,71 +272,6 @@ void measureRules(const CoverageToolOptions& options, const SiteInput& input,
                                      options.facing, options.privacy);
     if (!options.facing.empty() && options.measure.plane == 0)
         tell(options.common, "coverage", std::string(kFacesOnFloor));
-}
-
-namespace {
-
-/// Returns the crowds of --crowd: by sample, then by room.
-std::vector<SiteCrowd> crowdsOf(const CoverageToolOptions& options, const SiteInput& input,
-                                const SiteCoverage& coverage) {
-    const std::size_t rooms = input.rooms().size();
-    std::vector<SiteCrowd> crowds;
-    switch (options.crowd->of) {
-        case Robustness::CrowdOf::Random: {
-            const std::vector<std::size_t> people =
-                spreadOverStoreys(coverage, static_cast<std::size_t>(options.crowd->people));
-            crowds.assign(kSamples, SiteCrowd(rooms));
-            for (std::size_t i = 0; i < rooms; ++i) {
-                if (people[i] == 0) continue;
-                const CrowdFloor floor(*input.rooms()[i]);
-                for (std::size_t k = 0; k < kSamples; ++k)
-                    crowds[k][i] = floor.draw(
-                        people[i], {.seed = seedOfStorey(options.common.seed, i), .frame = k});
-            }
-            break;
-        }
-        case Robustness::CrowdOf::Scene:
-            crowds.emplace_back();
-            for (const auto& scene : input.rooms()) crowds[0].push_back(crowdOf(*scene));
-            break;
-        case Robustness::CrowdOf::Run:
-            // The storeys of a record have the same moments.
-            for (std::size_t i = 0; i < rooms; ++i) {
-                const std::vector<Crowd> own =
-                    crowdsOfRun(recordOfStorey(recordFor(input, options.run), storeyOf(input, i)),
-                                *input.rooms()[i], kSamples);
-                crowds.resize(i == 0 ? own.size() : std::min(crowds.size(), own.size()),
-                              SiteCrowd(rooms));
-                for (std::size_t k = 0; k < crowds.size(); ++k) crowds[k][i] = own[k];
-            }
-            break;
-    }
-    return crowds;
-}
-
-}  // namespace
-
-void measureRobustness(const CoverageToolOptions& options, const SiteInput& input,
-                       SiteResults& results) {
-    if (!options.perturb && options.failures == 0 && !options.crowd) return;
-    const SiteCoverage& coverage = results.coverage;
-    Robustness& robustness = results.robustness.emplace(
-        Robustness{.requirements = options.requirements, .failures = options.failures});
-    if (options.failures > 0)
-        robustness.losses = worstFailuresOfSite(coverage, options.failures, options.requirements);
-    const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
-    if (options.crowd) {
-        robustness.crowd_of = options.crowd->of;
-        robustness.people = options.crowd->people;
-        robustness.crowd =
-            crowdSite(input.building, coverage, options.measure, crowdsOf(options, input, coverage),
-                      options.requirements, *progress);
-    }
-    if (!options.perturb) return;
-    robustness.tolerance = *options.perturb;
-    robustness.mounting =
-        perturbSite(input.building, coverage, options.measure, *options.perturb, kSamples,
-                    options.common.seed, options.requirements, *progress);
 }
 
 namespace {

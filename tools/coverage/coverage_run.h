@@ -13,7 +13,6 @@
 #include "cli/site_operands.h"
 #include "coverage/coverage_options.h"
 #include "coverage/presence.h"
-#include "coverage/robustness.h"
 #include "report/objective_report.h"
 #include "site/site_coverage.h"
 #include "site/site_rules.h"
@@ -32,7 +31,6 @@ struct SiteResults {
     std::optional<ObjectiveFigures> objectives_sum;
     std::vector<Presence> presence;
     std::optional<Presence> presence_sum;
-    std::optional<Robustness> robustness;
     CoverageFindings found;  ///< of extensions
 
     /// Returns the parts of a report that were asked for. They refer to the results.
@@ -67,11 +65,6 @@ void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
 
 /// Measures --facing and --privacy. \throws UsageError for unknown zones
 void measureRules(const CoverageToolOptions& options, const SiteInput& input, SiteResults& results);
-
-/// Measures --perturb, --failures and --crowd. \throws UsageError as worstFailures(), UnmetError as
-/// CrowdFloor
-void measureRobustness(const CoverageToolOptions& options, const SiteInput& input,
-                       SiteResults& results);
 
 /// Writes -o: a file of a room, a page of all storeys, or a file for each. \pre there is a format
 void writeProducts(const CoverageToolOptions& options, const SiteInput& input,

@@ -110,7 +110,6 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
         writeProducts(options, input, results);
         writeDependencies(options.common, files);
     }
-    measureRobustness(options, input, results);
     measureRules(options, input, results);
     // Last: once a signal has ended a search, only the results are written.
     options.groups->measure({input, results.coverage, options.measure, options.requirements,

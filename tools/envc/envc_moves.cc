@@ -4,7 +4,6 @@
 #include <span>
 
 #include "base/message.h"
-#include "extensions/advice/suggestion_report.h"
 
 namespace ispace {
 

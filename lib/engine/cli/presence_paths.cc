@@ -19,7 +19,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/run/run_reader.h"
 #include "sim/world.h"
-#include "site/site_robustness.h"
+#include "site/storey_people.h"
 
 namespace ispace {
 

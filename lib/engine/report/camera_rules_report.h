@@ -37,6 +37,7 @@ class RulesSection final : public ReportSection {
   public:
     explicit RulesSection(const CameraRules& rules) : rules_(rules) {}
     [[nodiscard]] std::string_view name() const override { return "rules"; }
+    [[nodiscard]] int rank() const override { return 10; }
     void writeJson(JsonWriter& json) const override;
     [[nodiscard]] std::string text() const override;
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;

@@ -35,6 +35,7 @@ class ObjectivesSection final : public ReportSection {
     explicit ObjectivesSection(const ObjectiveFigures& figures);
     ~ObjectivesSection() override;
     [[nodiscard]] std::string_view name() const override { return "objectives"; }
+    [[nodiscard]] int rank() const override { return 20; }
     void writeJson(JsonWriter& json) const override;
     [[nodiscard]] std::string text() const override;
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;

@@ -15,6 +15,7 @@ class PresenceSection final : public ReportSection {
   public:
     explicit PresenceSection(const Presence& presence) : presence_(presence) {}
     [[nodiscard]] std::string_view name() const override { return "presence"; }
+    [[nodiscard]] int rank() const override { return 50; }
     void writeJson(JsonWriter& json) const override;
     [[nodiscard]] std::string text() const override;
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;

@@ -46,6 +46,7 @@ struct PageAdditions {
 ///       public:
 ///         explicit NoiseSection(const Noise& noise) : noise_(noise) {}
 ///         std::string_view name() const override { return "noise"; }
+///         int rank() const override { return 45; }
 ///         void writeJson(JsonWriter& json) const override { json.key("noise").value(noise_.db); }
 ///         std::string text() const override { return "noise: ...\n"; }
 ///     ...
@@ -56,6 +57,8 @@ class ReportSection {
     ReportSection& operator=(const ReportSection&) = delete;
     virtual ~ReportSection() = default;
     [[nodiscard]] virtual std::string_view name() const = 0;  ///< unique in a report
+    /// Returns its place among the sections: those of lower rank come first.
+    [[nodiscard]] virtual int rank() const = 0;
     /// Writes its members of the report, between those of the floor and the end of the object.
     virtual void writeJson(JsonWriter& json) const = 0;
     /// Returns lines that follow those of the floor; "" for none.
@@ -66,7 +69,10 @@ class ReportSection {
     [[nodiscard]] virtual const MapLayer* mapLayer() const { return nullptr; }
 };
 
-/// The sections of a report, in their order.
+/// The sections of a report, by rank.
 using ReportParts = std::vector<std::shared_ptr<const ReportSection>>;
+
+/// Adds sections, and sorts all by rank; equal ones keep their order.
+void join(ReportParts& parts, const ReportParts& more);
 
 }  // namespace ispace

@@ -17,6 +17,7 @@ class RunSection final : public ReportSection {
     explicit RunSection(const RunCoverage& run, bool is_of_storey = false);
     ~RunSection() override;
     [[nodiscard]] std::string_view name() const override { return "run"; }
+    [[nodiscard]] int rank() const override { return 40; }
     void writeJson(JsonWriter& json) const override;
     [[nodiscard]] std::string text() const override;
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;

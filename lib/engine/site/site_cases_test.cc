@@ -12,7 +12,7 @@
 #include "coverage/crowd.h"
 #include "scene/placement_schemas.h"
 #include "site/site_coverage.h"
-#include "site/site_robustness.h"
+#include "site/storey_people.h"
 #include "support/test_arrange_building.h"
 
 namespace ispace {

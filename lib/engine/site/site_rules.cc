@@ -190,6 +190,7 @@ class SiteRulesSection final : public ReportSection {
   public:
     explicit SiteRulesSection(std::vector<JudgedRule> rules) : rules_(std::move(rules)) {}
     [[nodiscard]] std::string_view name() const override { return "rules"; }
+    [[nodiscard]] int rank() const override { return 10; }
     void writeJson(JsonWriter& /*json*/) const override {}
     [[nodiscard]] std::string text() const override { return ""; }
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override {

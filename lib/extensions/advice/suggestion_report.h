@@ -34,6 +34,7 @@ class AdviceSection final : public ReportSection {
   public:
     explicit AdviceSection(const Advice& advice) : advice_(advice) {}
     [[nodiscard]] std::string_view name() const override { return "suggestions"; }
+    [[nodiscard]] int rank() const override { return 60; }
     void writeJson(JsonWriter& json) const override;
     [[nodiscard]] std::string text() const override;
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;

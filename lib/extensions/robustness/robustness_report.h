@@ -30,6 +30,7 @@ class RobustnessSection final : public ReportSection {
   public:
     explicit RobustnessSection(const Robustness& robustness) : robustness_(robustness) {}
     [[nodiscard]] std::string_view name() const override { return "robustness"; }
+    [[nodiscard]] int rank() const override { return 30; }
     void writeJson(JsonWriter& json) const override;
     [[nodiscard]] std::string text() const override;
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;

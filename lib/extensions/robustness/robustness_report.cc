@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/robustness_report.h"
+#include "extensions/robustness/robustness_report.h"
 
 #include <algorithm>
 
