@@ -31,6 +31,7 @@ const Extensions& extensions() {
         ISPACE_MAPS
         ISPACE_MEMORY
         ISPACE_MESHES
+        ISPACE_NAV2
         ISPACE_NAVIGATION
         ISPACE_NODES
         ISPACE_POSTURES

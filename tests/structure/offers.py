@@ -37,7 +37,8 @@ for name, rows in offers.items():
             if f"`{offer}` is not coverage" in about:
                 faults.append(f"{name} has no objective {offer}: {about}")
         elif owner == "export":
-            if f"`{offer}` is none of" in said("envc", "-", "--to", offer, text=""):
+            if all(f"`{offer}` is none of" in said(tool, "-", "-o", "x", "--to", offer, text="")
+                   for tool in ("envc", "coverage")):
                 faults.append(f"{name} writes no {offer}")
         elif owner == "format":
             read = any("addImporters(" in text

@@ -11,6 +11,7 @@
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "extensions.h"
+#include "io/exporters.h"
 
 namespace ispace {
 
@@ -99,7 +100,10 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
         const bool is_first = std::none_of(suffixes.begin(), suffixes.end(), is_taken);
         suffixes.push_back({is_first ? std::string(format.suffix) : "", std::string(format.name)});
     }
-    if (to.empty()) referToReport(o.common.output);
+    if (to.empty()) {
+        referToReport(o.common.output);
+        refuseMissing(o.common.output);
+    }
     const std::string name = outputFormat(to, o.common.output, formatNames(), suffixes);
     const CoverageFormat& format = coverageFormat(name);
     o.format = &format;
@@ -146,6 +150,7 @@ void checkReport(const CoverageToolOptions& o) {
 }  // namespace
 
 CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
+    ToolExtensions tool_extensions(extensions().options(), "coverage");  // these add formats
     CoverageToolOptions o;
     o.groups = std::make_shared<CoverageExtensions>(extensions().coverage());
     Words words;
@@ -216,7 +221,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                 Enters::History);
     line.group("The map");
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
-                Enters::History);
+                Enters::History, missingExporter);
     constexpr int kMinWidth = 200, kMaxWidth = 10000;
     line.count("--width", "PIXELS", o.map.width, kMinWidth, kMaxWidth, "width of a PNG or SVG",
                Enters::History);
@@ -237,7 +242,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "their best value",
               Enters::Nothing);
     line.built(extensions().names());
-    ToolExtensions tool_extensions(extensions().options(), "coverage");
     tool_extensions.declare(line);
     addSceneRules(line, o.rules);
     addStoreyOption(line, o.rules, "default: all storeys");

@@ -277,11 +277,7 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
 
 /// Returns the first format with the suffix: .yaml is a map of a slice, and records of a room.
 const ExportFormat* productFormat(const std::string& to, const EnvcOptions& options) {
-    const std::string own_suffix = suffixOf(options.common.output);
-    const std::string extension(to.empty() ? missingExporter(own_suffix) : "");
-    if (!extension.empty())
-        throw UsageError(options.common.output + ": `." + own_suffix +
-                         "` belongs to the extension " + extension + ", which this build lacks");
+    if (to.empty()) refuseMissing(options.common.output);
     const std::vector<std::string> names = formatNames(options.slice.has_value());
     std::vector<SuffixOf> suffixes;
     for (const std::string& name : names) {

@@ -13,7 +13,6 @@
 #include "base/missed_files.h"
 #include "base/run_files.h"
 #include "drawing/plan/plan.h"
-#include "drawing/plan/plan_json.h"
 #include "io/glb/glb_read.h"
 #include "io/importers.h"
 #include "record/text.h"
@@ -23,8 +22,7 @@ namespace ispace {
 
 namespace {
 
-/// Metres a cell of a ROS map, unless the options say otherwise.
-constexpr double kMapResolution = 0.05;
+namespace fs = std::filesystem;
 
 template <DocumentKind kKind>
 std::string recordsAs(Document&& document) {
@@ -145,19 +143,6 @@ constexpr ExportFormat kCoreFormats[] = {
                  const ExportOptions& options) -> ExportedFiles {
          return {writeGeoJson(scene, options.slice), ""};
      }},
-    {.name = "dxf",
-     .suffix = "dxf",
-     .help = "The plan in metres as ASCII DXF (AutoCAD 2000), on the layers walls, doors, windows, "
-             "objects, sensors, views, robots, zones, floors and names. Walls are the mid-lines "
-             "that enclose the room, drawn as wide as they are thick, shut doors 4 cm wide, open "
-             "ones as lines; objects are the outlines of their solid parts, whose elevation and "
-             "thickness hold base and height. envc reads the same room back from these layers: "
-             "walls, openings, and the parts of objects as cubes and cylinders.",
-     .takes_slice = true,
-     .write = [](const Scene& scene, const Document& /*document*/,
-                 const ExportOptions& options) -> ExportedFiles {
-         return {writeDxf(scene, options.slice), ""};
-     }},
     {.name = "ros",
      .suffix = "yaml",
      .help = "FILE.yaml and FILE.pgm: the free floor at 0.15 m, or at the height of --slice, as "
@@ -173,21 +158,6 @@ constexpr ExportFormat kCoreFormats[] = {
      .beside_role = "the picture of the map",
      .needs_beside = true,
      .naming_hint = "a ROS map is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml"},
-    {.name = "nav2-keepout",
-     .suffix = "yaml",
-     .help = "FILE.yaml and FILE.pgm: a mask for the keep-out filter of Nav2's costmaps, on the "
-             "cells that ros has: 100 in each --zone, 0 elsewhere. FILE.yaml holds the parameters "
-             "of the filter as a comment (type 0, base 0, multiplier 1).",
-     .takes_zones = true,
-     .write =
-         [](const Scene& scene, const Document& /*document*/, const ExportOptions& options) {
-             return writeKeepoutMask(scene, options.zones,
-                                     options.resolution.value_or(kMapResolution), options.beside);
-         },
-     .beside_suffix = ".pgm",
-     .beside_role = "the picture of the mask",
-     .needs_beside = true,
-     .naming_hint = "a mask is two files, FILE.yaml and FILE.pgm: name it with -o FILE.yaml"},
 };
 
 std::vector<ExportFormat>& allFormats() {
@@ -221,6 +191,15 @@ std::string_view missingExporter(std::string_view name) {
     return "";
 }
 
+void refuseMissing(const std::string& output) {
+    const std::string suffix = fs::path(output).extension().string();
+    if (suffix.empty()) return;
+    const std::string extension(missingExporter(suffix.substr(1)));
+    if (!extension.empty())
+        throw UsageError(output + ": `" + suffix + "` belongs to the extension " + extension +
+                         ", which this build lacks");
+}
+
 std::span<const ExportFormat> exportFormats() { return allFormats(); }
 
 const ExportFormat& exportFormat(std::string_view name) {
@@ -230,8 +209,6 @@ const ExportFormat& exportFormat(std::string_view name) {
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 fs::path folderOf(const std::string& path) {
     const fs::path folder = fs::path(path).parent_path();

@@ -70,6 +70,9 @@ void addMissingExporter(std::string_view name, std::string_view extension);
 /// Returns the extension that would write a format or suffix; "" for others.
 std::string_view missingExporter(std::string_view name);
 
+/// Rejects an output whose suffix is that of a missing format. \throws UsageError
+void refuseMissing(const std::string& output);
+
 /// Returns all formats, in the order of `--to`; the default is the first that can represent the
 /// requested content.
 std::span<const ExportFormat> exportFormats();
@@ -140,6 +143,8 @@ std::string writeRobotUrdf(const Scene& scene, std::size_t robot, const std::str
                            std::span<const std::string> wheels,
                            std::span<const std::string> sensors);
 
+/// Metres a cell of a ROS map, unless the options say otherwise.
+constexpr double kMapResolution = 0.05;
 /// Cells of a map along a side, and in all.
 constexpr int kMaxMapSide = 30'000;
 constexpr std::int64_t kMaxMapCells = 400'000'000;
@@ -165,13 +170,6 @@ ExportedFiles writeRosMap(const Scene& scene, double height, double resolution,
 /// resolution.
 /// \throws UsageError as writeRosMap()
 Grid rosMapCells(const Box2& box, double resolution);
-
-/// Writes a mask for Nav2's keep-out filter, with the cells of writeRosMap(). Cells with their
-/// centre in a zone or on its edge are marked; a zone too small for that marks the cell around its
-/// centre.
-/// \throws UsageError as readZone() and writeRosMap(), and for a zone beside the map
-ExportedFiles writeKeepoutMask(const Scene& scene, const std::vector<std::string>& zones,
-                               double resolution, const std::string& image_name);
 
 /// Opens the file that `path` names, relative to its folder; std::nullopt if it does not exist.
 /// \param anywhere false: it must lie in that folder, or in one of `others` (relative to it), or

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes coverage in the formats of other programs: tables, GIS, CAD, glTF, NumPy, and masks for
-// the costmap filters of Nav2.
+// Writes coverage in the formats of other programs: tables, GIS, glTF, NumPy, maps of ROS.
 #include "report/coverage_formats.h"
 
 #include <algorithm>
@@ -14,14 +13,12 @@
 #include "base/number.h"
 #include "base/numpy_file.h"
 #include "coverage/coverage.h"
-#include "drawing/dxf_writer.h"
-#include "drawing/plan/plan_json.h"
 #include "env/level.h"
 #include "geom/arrangement.h"
 #include "geom/overlay/overlay.h"
 #include "io/geojson.h"
 #include "io/glb/glb_write.h"
-#include "io/map/nav2_mask.h"
+#include "io/map/ros_map_text.h"
 #include "raster/codec.h"
 #include "raster/contour.h"
 #include "report/map/map_parts.h"
@@ -182,8 +179,10 @@ constexpr CoverageFormat mapFormat() {
 
 }  // namespace
 
-std::span<const CoverageFormat> coverageFormats() {
-    static constexpr CoverageFormat kFormats[] = {
+namespace {
+
+std::vector<CoverageFormat>& allFormats() {
+    static std::vector<CoverageFormat> formats = {
         mapFormat<PictureFormat::Png>(),
         mapFormat<PictureFormat::Svg>(),
         mapFormat<PictureFormat::Pdf>(),
@@ -194,10 +193,6 @@ std::span<const CoverageFormat> coverageFormats() {
         {.name = "geojson",
          .write = [](const CoverageProduct& product) -> CoverageFiles {
              return {coverageGeoJson(product.scene, product.coverage), ""};
-         }},
-        {.name = "dxf",
-         .write = [](const CoverageProduct& product) -> CoverageFiles {
-             return {coverageDxf(product.scene, product.coverage), ""};
          }},
         {.name = "glb",
          .write = [](const CoverageProduct& product) -> CoverageFiles {
@@ -211,24 +206,6 @@ std::span<const CoverageFormat> coverageFormats() {
              [](const CoverageProduct& product) {
                  return coverageRosMap(product.coverage, product.cell, product.beside_name);
              }},
-        {.name = "nav2-speed",
-         .square_cell = 0.05,
-         .suffix = "yaml",
-         .beside_suffix = ".pgm",
-         .takes_speeds = true,
-         .write =
-             [](const CoverageProduct& product) {
-                 return coverageSpeedMask(product.coverage, product.cell, product.speeds,
-                                          product.beside_name);
-             }},
-        {.name = "nav2-keepout",
-         .square_cell = 0.05,
-         .suffix = "yaml",
-         .beside_suffix = ".pgm",
-         .write =
-             [](const CoverageProduct& product) {
-                 return coverageKeepoutMask(product.coverage, product.cell, product.beside_name);
-             }},
         {.name = "npy",
          .write = [](const CoverageProduct& product) -> CoverageFiles {
              return {coverageNpy(product.coverage), ""};
@@ -236,8 +213,16 @@ std::span<const CoverageFormat> coverageFormats() {
         {.name = "npz", .write = [](const CoverageProduct& product) -> CoverageFiles {
              return {coverageNpz(product.coverage), ""};
          }}};
-    return kFormats;
+    return formats;
 }
+
+}  // namespace
+
+void addCoverageFormats(std::span<const CoverageFormat> formats) {
+    allFormats().insert(allFormats().end(), formats.begin(), formats.end());
+}
+
+std::span<const CoverageFormat> coverageFormats() { return allFormats(); }
 
 const CoverageFormat& coverageFormat(std::string_view name) {
     const auto formats = coverageFormats();
@@ -346,75 +331,6 @@ std::string cellsPng(const Coverage& coverage) {
 std::string coverageGlb(const Scene& scene, const Coverage& coverage, const Document& document) {
     const FloorPicture picture{"coverage", coverage.target.grid.limits, cellsPng(coverage)};
     return writeGlb(scene, document, &picture);
-}
-
-namespace {
-
-std::string seenLayer(std::uint32_t times) { return "seen-" + std::to_string(times); }
-
-}  // namespace
-
-std::string coverageDxf(const Scene& scene, const Coverage& coverage) {
-    const std::vector<std::uint32_t> times = timesSeen(coverage);
-    const std::uint32_t most = maxMultiplicity(coverage, times);
-    std::vector<DxfLayer> layers = {{"unseen", palette::kLost}};
-    for (std::uint32_t k = 1; k <= most; ++k)
-        layers.push_back(
-            {seenLayer(k), sequentialColor(static_cast<int>(k), static_cast<int>(most))});
-    for (DxfLayer& layer : dxfRoomLayers()) layers.push_back(std::move(layer));
-    layers.insert(layers.end(), {{"views", palette::kGlass}, {"sensors", palette::kSensor}});
-    DxfWriter out(layers);
-    // Fillings first: readers draw in the order of the file.
-    for (const Region& piece : seenBy(coverage, 0, times)) out.area("unseen", piece);
-    for (std::uint32_t k = 1; k <= most; ++k)
-        for (const Region& piece : seenBy(coverage, k, times)) out.area(seenLayer(k), piece);
-    addRoomToDxf(out, scene.environment);
-    for (const SensorView& view : coverage.sensors) {
-        if (view.region)
-            for (const auto* curves : {&*view.region, &view.beyond})
-                for (const Curve& curve : *curves) out.curve("views", curve);
-        else
-            for (const Region& piece : viewRegions(view, coverage.target.grid))
-                for (const Polygon& ring : curvesOf(piece)) out.path("views", ring, true);
-        addSensorToDxf(out, view.id, view.pose);
-    }
-    return out.finish();
-}
-
-namespace {
-
-constexpr double kMaxValue = 100;
-
-CoverageFiles filesOf(const Nav2Mask& mask, const std::string& picture_name) {
-    Nav2MaskFiles files = nav2MaskFiles(mask, picture_name);
-    return {std::move(files.map), std::move(files.picture)};
-}
-
-}  // namespace
-
-CoverageFiles coverageSpeedMask(const Coverage& coverage, double cell,
-                                std::span<const double> speeds, const std::string& picture_name) {
-    const Target& target = coverage.target;
-    Nav2Mask mask{kSpeedFilter, target.grid, cell, {}};
-    mask.values.resize(target.grid.size());
-    const std::vector<std::uint32_t> times = timesSeen(coverage);
-    target.free.forEach([&](std::size_t at) {
-        const double speed = speeds[std::min<std::size_t>(times[at], speeds.size() - 1)];
-        mask.values[at] = static_cast<std::uint8_t>(std::lround(kMaxValue * (1 - speed)));
-    });
-    return filesOf(mask, picture_name);
-}
-
-CoverageFiles coverageKeepoutMask(const Coverage& coverage, double cell,
-                                  const std::string& picture_name) {
-    const Target& target = coverage.target;
-    Nav2Mask mask{kKeepoutFilter, target.grid, cell, {}};
-    mask.values.resize(target.grid.size());
-    const CellSet covered = coveredCells(coverage);
-    target.free.forEach([&](std::size_t at) {
-        if (!covered.test(at)) mask.values[at] = static_cast<std::uint8_t>(kMaxValue);
-    });
-    return filesOf(mask, picture_name);
 }
 
 }  // namespace ispace

@@ -28,12 +28,6 @@ std::string coverageCsv(const Coverage& coverage);
 /// outlined.
 std::string coverageGeoJson(const Scene& scene, const Coverage& coverage);
 
-/// Writes the plan as DXF in metres: walls, doors, windows and objects, sensors, their views
-/// ("views", closed polylines with true arcs), and solid fillings of the indoor floor seen by
-/// exactly 1, 2, ... sensors ("seen-1", ...) and of the unseen floor ("unseen"), each on a separate
-/// layer. In fillings, polygons of the same area replace arcs.
-std::string coverageDxf(const Scene& scene, const Coverage& coverage);
-
 /// Writes the compiled room, see writeGlb(), with a texture of the cells on its floor: unseen
 /// floor, and the map's colours of redundancy, a pixel a cell (at most 4096 a side). \param
 /// document the records of the scene
@@ -48,15 +42,6 @@ struct CoverageFiles {
 /// floor, 205 (unknown) for unseen floor, 0 (occupied) for cells off the free floor. \pre cells are
 /// squares of `cell` metres \param image_name name of the picture in the YAML
 CoverageFiles coverageRosMap(const Coverage& coverage, double cell, const std::string& image_name);
-
-/// Writes a mask for Nav2's speed filter, as nav2MaskFiles() does: free floor that k sensors see
-/// gets the k-th of `speeds`, or the last one; elsewhere speed is not limited. \param speeds shares
-/// of full speed, 0.01 to 1, to a hundredth \pre cells are squares of `cell` metres
-CoverageFiles coverageSpeedMask(const Coverage& coverage, double cell,
-                                std::span<const double> speeds, const std::string& picture_name);
-/// Writes a mask for Nav2's keep-out filter: free floor that no sensor sees.
-CoverageFiles coverageKeepoutMask(const Coverage& coverage, double cell,
-                                  const std::string& picture_name);
 
 /// Writes the cells as a NumPy array (.npy) of rows and columns, the lowest first: the number of
 /// sensors that see a cell as int32, -1 outside the room.
@@ -74,7 +59,7 @@ struct CoverageProduct {
     MapOptions map = {};
     double cell = 0;                  ///< edge of square cells, if the format requires them
     std::string beside_name = {};     ///< name by which the product refers to the file beside it
-    std::vector<double> speeds = {};  ///< see coverageSpeedMask()
+    std::vector<double> speeds = {};  ///< shares of full speed, by the number of sensors
     Document document = {};           ///< the scene's records, with their history, for glTF
 };
 
@@ -88,6 +73,10 @@ struct CoverageFormat {
     bool takes_speeds = false;
     CoverageFiles (*write)(const CoverageProduct& product) = nullptr;
 };
+/// Adds formats after those of the core; a program does so before it asks for one. Those that a
+/// build lacks are addMissingExporter().
+void addCoverageFormats(std::span<const CoverageFormat> formats);
+/// Returns all formats, in the order of `--to`.
 std::span<const CoverageFormat> coverageFormats();
 /// Finds a format. \pre a format has this name
 const CoverageFormat& coverageFormat(std::string_view name);

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "drawing/plan/plan_json.h"
 #include "extensions/cad/dxf_drawing.h"
+#include "extensions/cad/dxf_plan.h"
 #include "geom/pose.h"
 #include "geom/tolerance.h"
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Masks of costmap filters, as files.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +10,6 @@
 #include "raster/grid.h"
 
 namespace ispace {
-
-/// The description of a map's picture that map_server reads.
-struct RosMap {
-    std::string image;  ///< how the description names the picture
-    std::string_view mode = "trinary";
-    double resolution = 0;                 ///< metres a cell
-    Point2 origin = {};                    ///< lower left corner of the picture
-    double occupied = 0.65, free = 0.196;  ///< thresholds of darkness
-};
-/// Writes the lines of a map.yaml.
-std::string rosMapYaml(const RosMap& map);
 
 /// A filter of Nav2's costmaps (nav2_costmap_2d/costmap_filters).
 struct Nav2Filter {
