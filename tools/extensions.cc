@@ -37,6 +37,7 @@ const Extensions& extensions() {
         ISPACE_POSTURES
         ISPACE_PRESSURE
         ISPACE_PROJECTION
+        ISPACE_PROOFS
         ISPACE_RADIOS
         ISPACE_REALITY
         ISPACE_ROBUSTNESS

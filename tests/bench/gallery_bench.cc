@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "arrange/gallery/gallery.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "bench_table.h"
 #include "extensions/cad/cad.h"
+#include "extensions/proofs/gallery/gallery.h"
 #include "geom/predicates.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"

@@ -61,12 +61,14 @@ violations() {
         # Rooms inside of folders have separate fences.
         if (!in_test && place ~ /^lib\/arrange\/search\// && index($0, "\"") && target !~ /^(base|arrange\/search)\//)
             report("lib/engine/arrange/search knows sets of cells alone: " target)
-        if (!in_test && place ~ /^lib\/arrange\/gallery\// && index($0, "\"") &&
-            target !~ /^(base|geom|arrange\/search|arrange\/gallery)\/|^arrange\/certificate_lines\.h$/)
-            report("lib/engine/arrange/gallery knows floors alone: " target)
-        if (!in_test && place ~ /^lib\/arrange\/poses\// && index($0, "\"") &&
-            target !~ /^(base|geom|arrange\/poses)\/|^arrange\/certificate_lines\.h$/)
-            report("lib/engine/arrange/poses knows floors alone: " target)
+        own = target
+        sub(/^extensions\/proofs\//, "", own)
+        if (!in_test && place ~ /^lib\/extensions\/proofs\/gallery\// && index($0, "\"") &&
+            own !~ /^(base|geom|arrange\/search|gallery)\/|^certificate_lines\.h$/)
+            report("lib/extensions/proofs/gallery knows floors alone: " target)
+        if (!in_test && place ~ /^lib\/extensions\/proofs\/poses\// && index($0, "\"") &&
+            own !~ /^(base|geom|poses)\/|^certificate_lines\.h$/)
+            report("lib/extensions/proofs/poses knows floors alone: " target)
         if (place ~ /^lib\/trace\/[^\/]*$/ && target ~ /^trace\/render\//)
             report("lib/kernel/trace must not include " target)
         # One private header hides the versions of Embree from the sources beside it.
@@ -127,12 +129,12 @@ expect lib/kernel/base/a.cc '#include <geom/pose.h>' yes
 expect lib/engine/arrange/a.cc '#include "server/server.h"' yes
 expect lib/engine/arrange/search/a.cc '#include "geom/point.h"' yes
 expect lib/engine/arrange/search/a.cc '#include "base/error.h"' no
-expect lib/engine/arrange/gallery/a.cc '#include "scene/scene.h"' yes
-expect lib/engine/arrange/gallery/a.cc '#include "arrange/search/set_cover.h"' no
-expect lib/engine/arrange/poses/a.cc '#include "scene/scene.h"' yes
-expect lib/engine/arrange/poses/a.cc '#include "geom/polygon.h"' no
-expect lib/engine/arrange/poses/a.cc '#include "arrange/certificate_lines.h"' no
-expect lib/engine/arrange/poses/a.cc '#include "arrange/refine.h"' yes
+expect lib/extensions/proofs/gallery/a.cc '#include "scene/scene.h"' yes
+expect lib/extensions/proofs/gallery/a.cc '#include "arrange/search/set_cover.h"' no
+expect lib/extensions/proofs/poses/a.cc '#include "scene/scene.h"' yes
+expect lib/extensions/proofs/poses/a.cc '#include "geom/polygon.h"' no
+expect lib/extensions/proofs/poses/a.cc '#include "extensions/proofs/certificate_lines.h"' no
+expect lib/extensions/proofs/poses/a.cc '#include "arrange/refine.h"' yes
 expect lib/kernel/trace/a.cc '#include "trace/render/render.h"' yes
 expect lib/engine/sim/a.cc '#include "server/server.h"' yes
 expect lib/engine/site/a.cc '#include "passage/lift.h"' yes

@@ -40,6 +40,9 @@ for name, rows in offers.items():
             if all(f"`{offer}` is none of" in said(tool, "-", "-o", "x", "--to", offer, text="")
                    for tool in ("envc", "coverage")):
                 faults.append(f"{name} writes no {offer}")
+        elif owner == "proof":
+            if f" {offer}|" not in (about := said("arrange", "--help", "--proof")) and f"|{offer}" not in about:
+                faults.append(f"{name} has no proof {offer}: {about}")
         elif owner == "format":
             read = any("addImporters(" in text
                        for text in (source.read_text() for source in (extensions / name).glob("*.cc")))

@@ -143,20 +143,12 @@ std::vector<std::string> wordsOf(const Value (&values)[kCount]) {
 
 }  // namespace
 
-std::pair<std::string, double> splitWeight(const std::string& text) {
-    const auto equals = text.rfind('=');
-    const auto weight =
-        equals == std::string::npos ? std::nullopt : parseDouble(text.substr(equals + 1));
-    if (!weight || equals == 0 || !(*weight >= 0 && *weight <= 1e6))
-        throw UsageError("--weight: `" + text + "` is not ZONE=W with a number from 0 on");
-    return {text.substr(0, equals), *weight};
-}
-
 ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     : ToolCommand("arrange", "[ENV] [LAYOUT]",
                   "Compute poses for sensors in a room: those of LAYOUT without one, and those of "
                   "--sensor. Writes a layout (.3dm) and reports an upper bound on coverage."),
-      objectives_(extensions().objectives()) {
+      objectives_("--objective", extensions().objectives()),
+      proofs_("--proof", extensions().proofs()) {
     line_.example("arrange room.env --sensor urg-04lx:3 -o layout.3dm",
                   "poses of three laser scanners that cover most of the room");
     line_.example("arrange room.env --sensor urg-04lx:9 --target 95% -o few.3dm",
@@ -188,6 +180,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     addSearchOptions();
     line_.group("Further files");
     addFileOptions();
+    proofs_.declare(line_);
     line_.group("Jobs");
     addShareOptions();
     line_.built(extensions().names());
@@ -315,12 +308,11 @@ void ArrangeCommand::addGoalOptions() {
         "find the fewest sensors (or the cheapest, cost=) that cover this share, e.g. 95%; COUNT "
         "is then a maximum; exit with 3 if it cannot be reached",
         Enters::History);
-    line_.choice(
-        "--proof", words_.proof, {"candidates", "poses"},
-        "over which poses results are proven: the candidates (default), or all poses; with "
-        "--target 100% of lasers that see all around, farther than the room is wide, else "
-        "of up to four level lasers, which are refined",
-        Enters::History);
+    std::vector<std::string> proofs = proofs_.all();
+    proofs.insert(proofs.begin(), "candidates");
+    line_.choice("--proof", words_.proof, proofs,
+                 "over which poses results are proven: the candidates (default)" + proofs_.help(),
+                 Enters::History);
     line_.parsed(
         "--budget", "COST",
         [&how](const std::string& text) {
@@ -436,18 +428,11 @@ void ArrangeCommand::addFileOptions() {
                Enters::Nothing);
     line_.file(
         "--report", "FILE", options_.report_file,
-        "write a report of the layout for people, as a page with its map and the sheet of an "
-        "installer (.html, .pdf), or that of coverage --json (.json)",
+        "write a report of the layout for people (.html, .pdf), or that of coverage --json (.json)",
         Enters::Nothing);
     addReportOptions(line_, options_.page);
     line_.file("--export-mps", "FILE", options_.mps_file,
                "write the model for solvers of mixed-integer programs (glpsol, cbc)",
-               Enters::Nothing);
-    line_.file("--certificate", "FILE", options_.certificate_file,
-               "write the proof of --proof poses, for --verify", Enters::Nothing);
-    line_.file("--verify", "FILE", options_.verify_file,
-               "check this certificate for the sensors of LAYOUT by other code than that of the "
-               "search; arrange nothing, and exit with 3 if it does not prove its bound",
                Enters::Nothing);
 }
 

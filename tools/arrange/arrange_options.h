@@ -14,6 +14,7 @@
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
 #include "cli/presence_paths.h"
+#include "cli/proof_extension.h"
 #include "cli/report_options.h"
 
 namespace ispace {
@@ -35,16 +36,21 @@ struct ArrangeToolOptions {
     ZoneWords zones;
     std::optional<PathsChoice> presence;              ///< ways that count instead of the floor
     std::shared_ptr<const ObjectiveGroup> objective;  ///< of an extension; null: none
+    std::shared_ptr<const ProofGroup> proof;          ///< likewise
     std::string places_file;
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:
-    std::string trace_file, curve_file, mps_file, report_file, heat_file, certificate_file;
+    std::string trace_file, curve_file, mps_file, report_file, heat_file;
     ReportWords page;                  ///< of --report and --material
     ExtensionTask task;                ///< instead of a layout; empty: none
-    std::string verify_file;           ///< a certificate to check instead of a search
     std::optional<double> time_limit;  ///< seconds
     BatchOptions batch;
     double checkpoint_interval = 5;  ///< seconds, of --resume
     SceneRules rules;
+
+    /// Returns the file of the certificate of a proof; "": none is wanted.
+    [[nodiscard]] std::string certificateFile() const {
+        return proof ? *proof->certificate().file : "";
+    }
 };
 
 class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
@@ -67,13 +73,10 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void addShareOptions();
     void settle();
     void settleStrategy();
-    void settleProof();
     void settleRobust();
     void settleObjective();
     void settleCameraRules();
     void settleDemand() const;
-    void settleProofOfCoverage();
-    void settleCertificate();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
     void settleBatch();
@@ -85,9 +88,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     };
     Words words_;
     ObjectiveExtensions objectives_;
+    ProofExtensions proofs_;
 };
-
-/// Parses `--weight ZONE=W`. \throws UsageError
-std::pair<std::string, double> splitWeight(const std::string& text);
 
 }  // namespace ispace

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Conversion and checks of options, once all of them are read.
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "arrange/arrange_options.h"
 #include "arrange/search/search_share.h"
@@ -34,8 +34,9 @@ Value valueOf(const std::string& word, const Value (&values)[kCount]) {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
-    settleCertificate();
-    constexpr const char* kSingle[] = {"--curve",
+    options_.proof = proofs_.find(words_.proof);
+    proofs_.check(line_, options_.proof.get());
+    std::vector<const char*> single = {"--curve",
                                        "--trace",
                                        "--report",
                                        "--material",
@@ -43,9 +44,9 @@ void ArrangeCommand::settle() {
                                        "--share",
                                        "--checkpoint-interval",
                                        "--alternatives",
-                                       "--heat",
-                                       "--certificate"};
-    checkBatchOptions(line_, options_.batch, options_.common, options_.operands, kSingle);
+                                       "--heat"};
+    if (options_.proof) single.push_back(options_.proof->certificate().name);
+    checkBatchOptions(line_, options_.batch, options_.common, options_.operands, single);
     if (!options_.batch.list.empty() && options_.places_file == "-")
         throw UsageError("--places: stdin is not read again for each line of LIST: give a file");
     referToReport(options_.common.output);
@@ -76,7 +77,7 @@ void ArrangeCommand::settle() {
         throw UsageError(
             "--refine measures what is in view of the indoor floor: leave out --reso and "
             "--judge no");
-    settleProof();
+    if (options_.proof) options_.proof->take(line_, how);
     settleRobust();
     settleObjective();
     settleCameraRules();
@@ -88,62 +89,6 @@ void ArrangeCommand::settle() {
     how.search.swap.seed = options_.common.seed;
     settleFiles();
     settleBatch();
-}
-
-void ArrangeCommand::settleProof() {
-    ArrangeOptions& how = options_.how;
-    how.over_poses = words_.proof == "poses";
-    if (!how.over_poses) return;
-    if (how.mount.heights.size() > 1) throw UsageError("--proof poses: give one height with --z");
-    if (!how.target) return settleProofOfCoverage();
-    if (how.target != 1)
-        throw UsageError("--proof poses is about --target 100%, or coverage without a target");
-    constexpr const char* kOfCandidates[] = {
-        "--effort",   "--strategy", "--deg",    "--mount",  "--tilt",       "--clearance",
-        "--keep-out", "--keep-in",  "--zone",   "--weight", "--redundancy", "--connected",
-        "--optimize", "--starts",   "--gap",    "--refine", "--curve",      "--trace",
-        "--judge",    "--reso",     "--grid",   "--cell",   "--export-mps", "--candidates",
-        "--shard",    "--resume",   "--robust", "--crowd",  "--facing",     "--privacy"};
-    for (const char* option : kOfCandidates)
-        if (line_.given(option))
-            throw UsageError(
-                "--proof poses tries no candidates, and all of the floor counts: leave out " +
-                std::string(option));
-}
-
-void ArrangeCommand::settleProofOfCoverage() {
-    constexpr const char* kOther[] = {"--mount",   "--tilt",      "--clearance",  "--keep-out",
-                                      "--keep-in", "--connected", "--budget",     "--judge",
-                                      "--reso",    "--curve",     "--export-mps", "--alternatives",
-                                      "--robust",  "--crowd",     "--facing",     "--privacy"};
-    for (const char* option : kOther)
-        if (line_.given(option))
-            throw UsageError(
-                "--proof poses bounds what sensors in any poses on the floor see: leave out " +
-                std::string(option));
-    options_.how.refine = true;
-}
-
-void ArrangeCommand::settleCertificate() {
-    ArrangeOptions& how = options_.how;
-    how.wants_certificate = !options_.certificate_file.empty();
-    if (how.wants_certificate && words_.proof != "poses")
-        throw UsageError("--certificate is about --proof poses: give it, too");
-    if (options_.verify_file.empty()) return;
-    constexpr const char* kFiles[] = {"--output", "--certificate",  "--batch", "--merge",
-                                      "--resume", "--alternatives", "--curve", "--trace",
-                                      "--heat",   "--report",       "--shard", "--time-limit"};
-    for (const char* option : kFiles)
-        if (line_.given(option))
-            throw UsageError("--verify writes nothing: leave out " + std::string(option));
-    const std::vector<std::string> words = line_.resultWords();
-    for (std::size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
-        const std::string name = words[i].substr(0, words[i].find('='));
-        if (name != "--redundancy" && name != "--zone" && name != "--weight" && name != "--storey")
-            throw UsageError(
-                "--verify checks a proof for the sensors of a layout: give FILE, ENV and LAYOUT, "
-                "and --redundancy, --zone and --weight as for the proof");
-    }
 }
 
 void ArrangeCommand::settleRobust() {
@@ -285,15 +230,15 @@ void ArrangeCommand::settleStrategy() {
 namespace {
 
 /// Lists the files beside the layout, each with its option.
-std::array<std::pair<const char*, const std::string*>, 7> sideFiles(
+std::vector<std::pair<const char*, const std::string*>> sideFiles(
     const ArrangeToolOptions& options) {
-    return {{{"--curve", &options.curve_file},
-             {"--trace", &options.trace_file},
-             {"--report", &options.report_file},
-             {"--material", &options.page.material},
-             {"--heat", &options.heat_file},
-             {"--certificate", &options.certificate_file},
-             {"--export-mps", &options.mps_file}}};
+    std::vector<std::pair<const char*, const std::string*>> files = {
+        {"--curve", &options.curve_file},   {"--trace", &options.trace_file},
+        {"--report", &options.report_file}, {"--material", &options.page.material},
+        {"--heat", &options.heat_file},     {"--export-mps", &options.mps_file}};
+    if (options.proof)
+        files.emplace_back(options.proof->certificate().name, options.proof->certificate().file);
+    return files;
 }
 
 }  // namespace
@@ -327,7 +272,7 @@ void ArrangeCommand::settleBatch() {
     SearchShare& share = options_.how.search.share;
     share.own = options_.batch.shard;
     const Optimizer optimizer = how.search.optimizer;
-    share.what = how.over_poses                                 ? Shared::Poses
+    share.what = how.prover                                     ? Shared::Poses
                  : how.target || optimizer == Optimizer::Greedy ? Shared::Candidates
                  : optimizer == Optimizer::Swap                 ? Shared::Starts
                                                                 : Shared::Tree;
@@ -341,10 +286,9 @@ void ArrangeCommand::settleBatch() {
         return;
     }
     const std::string what(nameOf(share.what));
-    if (how.over_poses != (share.what == Shared::Poses))
-        throw UsageError(how.over_poses
-                             ? "--share " + what + ": shards of --proof poses share poses"
-                             : "--share poses is about --proof poses: give it, too");
+    if ((how.prover != nullptr) != (share.what == Shared::Poses))
+        throw UsageError(how.prover ? "--share " + what + ": shards of --proof poses share poses"
+                                    : "--share poses is about --proof poses: give it, too");
     if (how.target && share.what != Shared::Candidates)
         throw UsageError("--share " + what +
                          ": with --target there are many searches; shards can share candidates");

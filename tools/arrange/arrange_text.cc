@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "arrange/arrange_run.h"
-#include "arrange/gallery/gallery.h"
+#include "arrange/search/set_cover.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "coverage/robustness.h"
@@ -112,37 +112,6 @@ std::string objectiveText(const ArrangeOptions& how, const Arrangement& arrangem
            formatFixed((1 - arrangement.candidate_bound) * whole, kDigits) + " m\n";
 }
 
-/// Reports a proof over all poses.
-std::string posesText(const Arrangement& arrangement) {
-    constexpr int kDigits = 3;
-    const PosesProof& proof = *arrangement.over_poses;
-    std::string text = "arrange: ";
-    if (proof.cover > 0)
-        text += counted(proof.cover, "sensor sees ", "sensors see ") + "the floor of " +
-                formatFixed(proof.floor, 2) + " m2 but for " +
-                formatDouble(roundSignificant(proof.missed, kDigits)) + " m2";
-    else
-        text += "no cover of the floor was found";
-    text += "; over all poses at least " + std::to_string(proof.bound) +
-            (proof.bound == 1 ? " is" : " are") + " needed";
-    if (proof.isProven()) return text + ": proven fewest\n";
-    return text + (arrangement.is_complete ? "\n" : ", cut short\n");
-}
-
-/// Reports a bound of the coverage over all poses.
-std::string posesBoundText(const ArrangeOptions& how, const Arrangement& arrangement) {
-    const PosesBound& proof = *arrangement.poses_bound;
-    const double gap = std::max(0.0, (proof.bound - proof.found) / proof.bound);
-    const std::string times =
-        how.redundancy > 1 ? std::to_string(how.redundancy) + " sensors at a time" : "";
-    const std::string unit = how.weights.isUniform() ? " m2" : " m2 by weight";
-    return "arrange: " + (times.empty() ? "the layout sees" : times + " see") + ' ' +
-           formatFixed(proof.found, 3) + unit + " (" + percentText(proof.found / proof.floor) +
-           ") by exact area; over all poses at most " + formatFixed(proof.bound, 3) + unit + " (" +
-           percentText(proof.bound / proof.floor) + ", gap " + percentText(gap) + ")" +
-           (arrangement.is_complete ? "" : ", cut short") + '\n';
-}
-
 /// Returns a line for each of several rooms.
 std::string roomsText(const Arrangement& arrangement) {
     std::string text;
@@ -159,7 +128,9 @@ std::string roomsText(const Arrangement& arrangement) {
 
 std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) {
     const ArrangeOptions& how = work.how;
-    if (arrangement.over_poses) return posesText(arrangement);
+    const std::string proven =
+        arrangement.proof ? "arrange: " + arrangement.proof->finding(how, arrangement) + '\n' : "";
+    if (arrangement.proof && arrangement.proof->replacesSearch()) return proven;
     std::ptrdiff_t standing = 0;
     for (const auto& room : work.input.rooms())
         standing +=
@@ -182,9 +153,9 @@ std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) 
             ") " + overText(how, arrangement);
     if (!arrangement.is_complete && gap > 0) text += ", cut short";
     text += '\n' + cellsGapText(arrangement);
-    if (!arrangement.is_complete && gap <= 0 && !arrangement.poses_bound)
+    if (!arrangement.is_complete && gap <= 0 && !arrangement.proof)
         text += "arrange: " + unfinishedText(how) + " was cut short\n";
-    if (how.refine && !arrangement.poses_bound &&
+    if (how.refine && !arrangement.proof &&
         arrangement.refined_after > arrangement.refined_before) {
         text += "arrange: refined from " + formatFixed(arrangement.refined_before, 3) + " to " +
                 formatFixed(arrangement.refined_after, 3) +
@@ -193,7 +164,7 @@ std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) 
                                              percentText(arrangement.bound) + " can be covered"
                                        : "for any places at all no bound below 100% is known") +
                 '\n';
-    } else if (how.refine && !arrangement.poses_bound) {
+    } else if (how.refine && !arrangement.proof) {
         text += "arrange: refining found nothing better than " +
                 formatFixed(arrangement.refined_before, 3) + " m2 by exact area\n";
     }
@@ -219,7 +190,7 @@ std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) 
     if (how.budget)
         text += "arrange: cost " + formatDouble(arrangement.cost) + " of a budget of " +
                 formatDouble(*how.budget) + '\n';
-    if (arrangement.poses_bound) text += posesBoundText(how, arrangement);
+    text += proven;
     if (!arrangement.curve.empty()) text += curveText(arrangement.curve);
     return text;
 }
@@ -251,12 +222,8 @@ std::string alternativesText(const std::string& output, const Arrangement& arran
 }
 
 std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangement) {
-    if (arrangement.over_poses)
-        return "the target of 100% is not reached: " +
-               (arrangement.over_poses->cover > arrangement.sensors.size()
-                    ? counted(arrangement.over_poses->cover, "sensor", "sensors") +
-                          " would reach it; allow more (:COUNT)"
-                    : "no cover was found");
+    if (arrangement.proof && arrangement.proof->replacesSearch())
+        return arrangement.proof->shortfall(arrangement);
     if (isShort(arrangement))
         return "the target of 100% is not reached: " +
                counted(arrangement.sensors.size(), "sensor covers", "sensors cover") +

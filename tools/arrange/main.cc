@@ -6,9 +6,6 @@
 #include "arrange/arrange_options.h"
 #include "arrange/arrange_report.h"
 #include "arrange/arrange_run.h"
-#include "arrange/arrange_verify.h"
-#include "arrange/gallery/guard_certificate.h"
-#include "arrange/poses/certificate.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
@@ -42,8 +39,8 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         input.layout ? input.layout->history : History(),
         environmentFileFor(options.common.output, input.environment_operand),
         input.digest(),
-        work.how.over_poses ? "poses" : std::string(nameOf(work.how.strategy)),
-        std::string(nameOf(work.how.over_poses ? Optimizer::Exact : work.how.search.optimizer)),
+        std::string(work.how.prover ? work.how.prover->name() : nameOf(work.how.strategy)),
+        std::string(nameOf(work.how.prover ? Optimizer::Exact : work.how.search.optimizer)),
         std::string(work.how.demand ? work.how.demand->name() : work.how.objective.name())};
     parts.history.push_back(command.historyLine(input.named));
     const auto document = [&](const Arrangement& found) {
@@ -59,15 +56,12 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
     writeMaterialOf(options, work, arrangement, layout);
     if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
-    if (const std::string& file = options.certificate_file; !file.empty()) {
-        if (const auto& bound = arrangement.poses_bound; bound && bound->certificate)
-            writeAll(file, certificateText(*bound->certificate, parts.history));
-        if (const auto& proof = arrangement.over_poses; proof && proof->certificate) {
-            writeAll(file, certificateText(*proof->certificate, parts.history));
-            const std::string weakness = weaknessOf(*proof->certificate, proof->bound);
-            if (!weakness.empty()) warn(options.common, "arrange", weakness);
+    if (const std::string file = options.certificateFile(); !file.empty() && arrangement.proof)
+        if (const auto certificate = arrangement.proof->certificate(parts.history)) {
+            writeAll(file, certificate->text);
+            if (!certificate->weakness.empty())
+                warn(options.common, "arrange", certificate->weakness);
         }
-    }
     if (const std::string& file = options.curve_file; !file.empty())
         writeAll(file, curveFile(arrangement.curve, outputFormat({}, file, curveFormats())));
     for (std::size_t i = 0; i < arrangement.alternatives.size(); ++i)
@@ -164,7 +158,8 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimOutput(options.report_file, "--report");
     claimOutput(options.page.material, "--material");
     claimOutput(options.heat_file, "--heat");
-    claimOutput(options.certificate_file, "--certificate");
+    const std::string certificate = options.certificateFile();
+    claimOutput(certificate, "--certificate");
     ArrangeWork work = readWork(options);
     for (int i = 0; i < options.how.alternatives; ++i) {
         const std::string file =
@@ -175,8 +170,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimHeat(options, work);
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file,
-          &options.report_file, &options.page.material, &options.heat_file,
-          &options.certificate_file})
+          &options.report_file, &options.page.material, &options.heat_file, &certificate})
         mustBeWritable(*file);
     warnOfSearch(options, work);
     bool is_done = false;
@@ -238,7 +232,6 @@ void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const Common
 void arrangeSensors(const ArrangeCommand& command) {
     const ArrangeToolOptions& options = command.options();
     if (options.task) return options.task();
-    if (!options.verify_file.empty()) return verifyCertificate(options);
     if (!options.batch.list.empty())
         return runBatch(
             {"arrange", options.common, options.batch,

@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "arrange/coverage_model.h"
-#include "arrange/gallery/gallery.h"
 #include "arrange/objective.h"
-#include "arrange/over_poses.h"
+#include "arrange/prover.h"
 #include "arrange/refine.h"
 #include "arrange/search/alternatives.h"
 #include "arrange/search/greedy_search.h"
 #include "arrange/search/problem.h"
+#include "arrange/search/set_cover.h"
 #include "arrange/search_parts.h"
 #include "base/error.h"
 #include "base/number.h"
@@ -27,7 +27,7 @@
 namespace ispace {
 
 std::string needsOneRoom(const ArrangeOptions& options) {
-    return options.over_poses ? "--proof poses" : "";
+    return options.prover ? "--proof " + std::string(options.prover->name()) : "";
 }
 
 namespace {
@@ -378,7 +378,7 @@ Arrangement arrangeLimited(const ArrangeSite& site, const std::vector<SensorGrou
     result.bound = result.candidate_bound;
     result.sensors = model.placementsOf(chosen);
     if (options.refine) refineIn(result, model, found.best.value, progress);
-    if (options.over_poses) boundOfPoses(model, result, progress);
+    if (options.prover) options.prover->prove(model, result, progress);
     if (share.own) return {};
     measure(result, model);
     // Candidates whose views of other rooms were not computed in time see more than they know of.
@@ -525,11 +525,11 @@ Arrangement arrange(const ArrangeSite& site, const std::vector<SensorGroup>& gro
         group.whole = group.model;
         limitCovered(group.model, options);
     }
-    if (options.over_poses) {
+    if (options.prover) {
         if (!site.isOneRoom()) throw UsageError(needsOneRoom(options) + " needs one room");
-        const Scene& scene = *limited.rooms.front().scene;
-        if (options.target) return arrangeOverPoses(scene, limited_groups, options, progress);
-        mustBeBoundable(scene, limited_groups, options);
+        if (std::optional<Arrangement> found = options.prover->arrange(
+                *limited.rooms.front().scene, limited_groups, options, progress))
+            return std::move(*found);
     }
     if (options.privacy.empty())
         return arrangeFromResults(limited, limited_groups, options, progress, mps);
@@ -569,11 +569,10 @@ Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     Record result(*sceneSchemas().find("result"));
     result.set("coverage", Value(roundSignificant(arrangement.coverage)));
     result.set("area", Value(roundSignificant(arrangement.area)));
-    // A bound over all poses is one of the exact area, as is the value beside it.
-    const auto value =
-        arrangement.poses_bound
-            ? std::optional(arrangement.poses_bound->found / arrangement.poses_bound->floor)
-            : arrangement.value;
+    const Proof* const proof = arrangement.proof.get();
+    // The value beside the bound of a proof is by the measure of the proof.
+    const std::optional<double> of_proof = proof != nullptr ? proof->value() : std::nullopt;
+    const std::optional<double> value = of_proof ? of_proof : arrangement.value;
     if (value) result.set("value", Value(roundSignificant(*value)));
     if (!parts.objective.empty()) result.set("objective", Value(parts.objective));
     result.set("bound", Value(roundSignificant(arrangement.bound)));
@@ -583,10 +582,10 @@ Record resultRecord(const LayoutParts& parts, const Arrangement& arrangement) {
     result.set("optimize", Value(parts.optimize));
     result.set("candidates", Value(static_cast<double>(arrangement.candidates)));
     if (arrangement.least) result.set("least", Value(*arrangement.least));
-    if (arrangement.over_poses || arrangement.poses_bound) result.set("proof", Value("poses"));
-    if (arrangement.over_poses) {
+    if (proof != nullptr) {
+        result.set("proof", Value(std::string(proof->name())));
         TupleList witnesses;
-        for (const Point2 p : arrangement.over_poses->witnesses) witnesses.push_back({p.x, p.y});
+        for (const Point2 p : proof->witnesses()) witnesses.push_back({p.x, p.y});
         if (!witnesses.empty()) result.set("witnesses", Value(std::move(witnesses)));
     }
     if (!arrangement.is_complete) result.set("complete", Value(false));

@@ -15,6 +15,7 @@
 
 #include "arrange/demand.h"
 #include "arrange/placement_rules.h"
+#include "arrange/prover.h"
 #include "arrange/robust.h"
 #include "arrange/search/search.h"
 #include "arrange/sensor_group.h"
@@ -29,9 +30,6 @@
 #include "scene/scene.h"
 
 namespace ispace {
-
-struct GuardCertificate;
-struct PoseCertificate;
 
 /// How candidate sites are proposed; each strategy is a row in arrange/strategy.cc.
 enum class Strategy {
@@ -122,9 +120,8 @@ struct ArrangeOptions {
     /// Of several rooms: that of any of them, which says what is asked; see RoomGoals.
     std::shared_ptr<const Demand> demand;
     std::optional<double> target;  ///< share to reach at minimum cost
-    /// Prove over all poses: the number of sensors with a target, else their coverage.
-    bool over_poses = false;
-    bool wants_certificate = false;  ///< of that proof, see PosesProof and PosesBound
+    /// Proves over more poses than the candidates; null: the bound of the search is enough.
+    std::shared_ptr<const Prover> prover;
     std::optional<double> budget;
     bool wants_curve = false, wants_trace = false, wants_gains = false;
     int alternatives = 0;  ///< number of further layouts, see Arrangement::alternatives
@@ -159,27 +156,6 @@ struct CurvePoint {
     int sensors = 0;
     double value = 0;  ///< share covered by the best layout found
     double bound = 1;  ///< upper bound for layouts of these candidates
-};
-
-/// A proof of the least number of sensors over all poses.
-struct PosesProof {
-    std::size_t cover = 0;  ///< number of sensors that see the floor but for `missed`; 0: unknown
-    std::size_t bound = 0;  ///< fewer sensors, in any poses, do not see all witnesses
-    double missed = 0;      ///< m2, by an exact union
-    double floor = 0;       ///< m2
-    std::vector<Point2> witnesses;
-    std::shared_ptr<const GuardCertificate> certificate;  ///< if one was wanted
-
-    [[nodiscard]] bool isProven() const { return cover > 0 && cover == bound; }
-};
-
-/// A bound of the coverage over all poses, m2.
-struct PosesBound {
-    double found = 0;                   ///< seen by the layout, by exact area
-    double bound = 0;                   ///< the same number of sensors, in any poses, sees no more
-    double floor = 0;                   ///< the indoor floor
-    std::size_t boxes = 0, tuples = 0;  ///< of poses, whose views were bounded
-    std::shared_ptr<const PoseCertificate> certificate;  ///< if one was wanted
 };
 
 /// The gain of the candidates of one sensor of a layout.
@@ -228,9 +204,8 @@ struct Arrangement {
     /// empty if no closed form is known. Less than 100 % misses that target, though all cells are
     /// covered; other targets count cells.
     std::optional<double> exact_share;
-    std::optional<double> free_share;  ///< with it: the free floor, as a share of the indoor area
-    std::optional<PosesProof> over_poses;   ///< with ArrangeOptions::over_poses and a target
-    std::optional<PosesBound> poses_bound;  ///< with ArrangeOptions::over_poses and without one
+    std::optional<double> free_share;    ///< with it: the free floor, as a share of the indoor area
+    std::shared_ptr<const Proof> proof;  ///< of ArrangeOptions::prover
 
     /// With an objective other than coverage, `value` is a share of this many metres: of the
     /// shortest way between the zones, or of the largest error that counts, which it falls short.

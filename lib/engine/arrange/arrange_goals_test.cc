@@ -362,5 +362,22 @@ TEST(CoverageModel, ChosenCandidatesBecomeSensorsOfTheSameValue) {
               valueOf(model.problem(), chosen));
 }
 
+TEST(ArrangeGoals, AllCellsAreNotAllOfTheFloor) {
+    // A corridor of half a cell's width off the room: no centre of a cell lies in it.
+    const Scene scene = roomScene(
+        "#env 1\nfence path=0,0;4,0;4,4;1,4;1,6;0.98,6;0.98,4;0,4 closed=yes\ninside at=2,2\n");
+    ArrangeOptions options = coarse();
+    options.target = 1;
+    const Arrangement found =
+        arranged(scene, groupsOf(scene, {"laser,range=99,fov=360"}, true), options);
+    ASSERT_TRUE(found.exact_share);
+    EXPECT_EQ(found.candidate_value, 1);
+    EXPECT_LT(*found.exact_share, 1 - 1e-6);
+    EXPECT_FALSE(found.is_reached);
+    options.target = 0.99;
+    EXPECT_TRUE(
+        arranged(scene, groupsOf(scene, {"laser,range=99,fov=360"}, true), options).is_reached);
+}
+
 }  // namespace
 }  // namespace ispace

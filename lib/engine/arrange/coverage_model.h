@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/arrange: maps the rooms of a site to a weighted coverage problem and its
+// lib/engine/arrange: maps the rooms of a site to a weighted coverage problem and its
 // solutions back to sensors.
 #pragma once
 

@@ -330,7 +330,7 @@ TEST(CommandLine, FindsAnOptionBeforeAGroupThatMerelyHasItsWord) {
 
 TEST(CommandLine, NamesTheExtensionOfAnObjectiveThatTheBuildLacks) {
     constexpr ObjectiveRow kRows[] = {{"evenness", nullptr, "even"}};
-    const ObjectiveExtensions objectives(kRows);
+    const ObjectiveExtensions objectives("--objective", kRows);
     EXPECT_EQ(objectives.find("coverage"), nullptr);
     try {
         static_cast<void>(objectives.find("even"));

@@ -17,6 +17,7 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
         if (each.objective != nullptr) objectives_.push_back({each.name, each.objective});
         if (each.coverage != nullptr) coverage_.push_back({each.name, each.coverage});
         if (each.record != nullptr) records_.push_back(each.record);
+        if (each.proof != nullptr) proofs_.push_back({each.name, each.proof});
         if (each.judge != nullptr) judges_.push_back(each.judge);
         if (each.bridge != nullptr) bridges_.push_back({each.name, each.bridge});
         if (each.role != nullptr) roles_.push_back(each.role);
@@ -32,6 +33,8 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
             addMissingExporter(name, extension);
         else if (owner == "objective")
             objectives_.push_back({extension, nullptr, name});
+        else if (owner == "proof")
+            proofs_.push_back({extension, nullptr, name});
         else
             options_.push_back({extension, owner, nullptr, name});
     }

@@ -19,6 +19,7 @@
 #include "cli/coverage_group.h"
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
+#include "cli/proof_extension.h"
 #include "cli/record_group.h"
 #include "cli/run_bridge.h"
 #include "cli/run_judge.h"
@@ -40,8 +41,9 @@ struct Extension {
     void (*add)() = nullptr;
     std::vector<ToolOptions> options = {};                     ///< at most one for each tool
     std::unique_ptr<ObjectiveGroup> (*objective)() = nullptr;  ///< of `arrange --objective`
-    std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;      ///< of reports of `coverage`
-    MakeRecordGroup record = nullptr;                            ///< of records of `simrun`
+    std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;    ///< of reports of `coverage`
+    MakeRecordGroup record = nullptr;                          ///< of records of `simrun`
+    std::unique_ptr<ProofGroup> (*proof)() = nullptr;          ///< of `arrange --proof`
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;          ///< of runs of `simrun`
     std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;        ///< another protocol of a run
     MakeRoleService role = nullptr;                            ///< requests of the protocol
@@ -50,7 +52,7 @@ struct Extension {
 /// What an extension that a build lacks would bring.
 struct MissingOffer {
     std::string_view extension;
-    /// A tool (`name` is its option), or "record", "format", "export" or "objective".
+    /// A tool (`name` is its option), or "record", "format", "export", "objective" or "proof".
     std::string_view owner;
     std::string_view name;
 };
@@ -68,6 +70,7 @@ class Extensions {
     [[nodiscard]] const std::vector<ObjectiveRow>& objectives() const { return objectives_; }
     [[nodiscard]] const std::vector<CoverageRow>& coverage() const { return coverage_; }
     [[nodiscard]] const std::vector<MakeRecordGroup>& records() const { return records_; }
+    [[nodiscard]] const std::vector<ProofRow>& proofs() const { return proofs_; }
     [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
     [[nodiscard]] const std::vector<BridgeRow>& bridges() const { return bridges_; }
     [[nodiscard]] const std::vector<MakeRoleService>& roles() const { return roles_; }
@@ -78,6 +81,7 @@ class Extensions {
     std::vector<ObjectiveRow> objectives_;
     std::vector<CoverageRow> coverage_;
     std::vector<MakeRecordGroup> records_;
+    std::vector<ProofRow> proofs_;
     std::vector<MakeJudge> judges_;
     std::vector<BridgeRow> bridges_;
     std::vector<MakeRoleService> roles_;

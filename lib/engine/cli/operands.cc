@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/message.h"
+#include "base/number.h"
 #include "base/run_files.h"
 #include "cli/common_options.h"
 #include "cli/kept_rooms.h"
@@ -314,6 +315,15 @@ SceneInput readScene(const SceneRequest& request) { return OperandReader(request
 void warnOfImport(const CommonOptions& options, const std::string& tool, const SceneInput& input) {
     warn(options, tool, input.choices);
     warn(options, tool, input.environment.warnings);
+}
+
+std::pair<std::string, double> splitWeight(const std::string& text) {
+    const auto equals = text.rfind('=');
+    const auto weight =
+        equals == std::string::npos ? std::nullopt : parseDouble(text.substr(equals + 1));
+    if (!weight || equals == 0 || !(*weight >= 0 && *weight <= 1e6))
+        throw UsageError("--weight: `" + text + "` is not ZONE=W with a number from 0 on");
+    return {text.substr(0, equals), *weight};
 }
 
 void addZones(std::span<const std::string> zones, SceneInput& input) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
@@ -69,6 +70,9 @@ void warnOfImport(const CommonOptions& options, const std::string& tool, const S
 
 /// Adds the zones of --zone to the scene, as records. \throws UsageError as readZones()
 void addZones(std::span<const std::string> zones, SceneInput& input);
+
+/// Parses the ZONE=W of --weight. \throws UsageError
+std::pair<std::string, double> splitWeight(const std::string& text);
 
 /// Returns the files that a scene was read from, the operands first; for -MD.
 std::vector<std::string> filesOf(const SceneInput& input);

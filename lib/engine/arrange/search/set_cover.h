@@ -9,6 +9,10 @@
 
 namespace ispace {
 
+/// Share of the floor that a cover of all of it may miss by rounding: the measure of
+/// `--target 100%`.
+constexpr double kMissedShare = 1e-9;
+
 /// A set cover problem: choose columns of least total cost that cover every row.
 struct SetCover {
     std::size_t rows = 0;
