@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/arrange: bounds of the floor in a box.
+// lib/engine/arrange: bounds of the floor in a box.
 #pragma once
 
 #include <cstddef>

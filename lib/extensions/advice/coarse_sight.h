@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/arrange: estimates by coarse cells which changes of a scene deserve an
+// Private to lib/extensions/advice: estimates by coarse cells which changes of a scene deserve an
 // exact measure.
 #pragma once
 

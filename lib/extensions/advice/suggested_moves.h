@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/arrange: the floor that sensors gain by moves of furniture, from the
+// Private to lib/extensions/advice: the floor that sensors gain by moves of furniture, from the
 // shadows of the pieces alone.
 #pragma once
 
