@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one list of extensions, in the order of `--help`: folders of lib/extensions. Those that CMake
+// The one list of extensions, in the order of `--help`, and in which they measure (advice, which a
+// signal may end, is the last): folders of lib/extensions. Those that CMake
 // does not build (ISPACE_EXTENSIONS) are empty lines of it.
 #include "extensions.h"
 
@@ -12,7 +13,6 @@ namespace ispace {
 const Extensions& extensions() {
     static const std::vector<Extension> built = {
         // clang-format off
-        ISPACE_ADVICE
         ISPACE_APPLIANCES
         ISPACE_BUMPERS
         ISPACE_CAD
@@ -35,6 +35,7 @@ const Extensions& extensions() {
         ISPACE_NAVIGATION
         ISPACE_NODES
         ISPACE_POSTURES
+        ISPACE_PRESENCE
         ISPACE_PRESSURE
         ISPACE_PROJECTION
         ISPACE_PROOFS
@@ -42,6 +43,7 @@ const Extensions& extensions() {
         ISPACE_REALITY
         ISPACE_ROBUSTNESS
         ISPACE_TRACKING
+        ISPACE_ADVICE
         ISPACE_WIRE
         ISPACE_WEB
         ISPACE_ROS

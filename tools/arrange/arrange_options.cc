@@ -330,13 +330,6 @@ void ArrangeCommand::addGoalOptions() {
                 "no camera may see these zones (globs allowed), or see them with at least D pixels "
                 "a metre, a number or a density class",
                 Enters::History);
-    line_.parsed(
-        "--presence", "DIR|wander:N[,TIME]",
-        [this](const std::string& text) { options_.presence = parseWays(text); },
-        "instead of floor, the ways of people count on which PIR sensors and radars detect them "
-        "within a second: of the run that simrun --record wrote to DIR, or of N people who wander "
-        "for TIME (default 10min)",
-        Enters::BaseNames);
     line_.meters("--plane", how.plane, 0, 1000,
                  "height of the plane that all sensors but level lasers cover, 0 is the floor",
                  Enters::History);

@@ -13,7 +13,6 @@
 #include "cli/common_options.h"
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
-#include "cli/presence_paths.h"
 #include "cli/proof_extension.h"
 #include "cli/report_options.h"
 
@@ -34,7 +33,6 @@ struct ArrangeToolOptions {
     std::vector<std::string> fixed;    ///< globs of ids; empty: all placed sensors stay
     ArrangeOptions how;
     ZoneWords zones;
-    std::optional<PathsChoice> presence;              ///< ways that count instead of the floor
     std::shared_ptr<const ObjectiveGroup> objective;  ///< of an extension; null: none
     std::shared_ptr<const ProofGroup> proof;          ///< likewise
     std::string places_file;
@@ -76,7 +74,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleRobust();
     void settleObjective();
     void settleCameraRules();
-    void settleDemand() const;
+    void settleDemand();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;
     void settleBatch();

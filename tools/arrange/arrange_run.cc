@@ -131,9 +131,6 @@ void takePlaces(const ArrangeToolOptions& options, ArrangeWork& work) {
 /// Makes the demand that counts instead of the floor, those of a building each for its storeys.
 void takeDemand(const ArrangeToolOptions& options, ArrangeWork& work) {
     std::vector<std::shared_ptr<const Demand>> demands;
-    if (options.presence)
-        demands = demandsOfPresence(*options.presence, work.input, options.common.seed,
-                                    work.how.plane, work.files);
     if (options.objective)
         demands = options.objective->demandsIn(work.input, work.goals, work.how, options.common,
                                                work.files);

@@ -134,12 +134,13 @@ void ArrangeCommand::settleObjective() {
                     other);
     };
     constexpr const char* kOther[] = {
-        "--target", "--budget", "--refine", "--connected",  "--reso",         "--judge",
-        "--proof",  "--shard",  "--resume", "--robust",     "--crowd",        "--facing",
-        "--curve",  "--heat",   "--trace",  "--export-mps", "--alternatives", "--presence"};
+        "--target", "--budget", "--refine", "--connected",  "--reso",        "--judge",
+        "--proof",  "--shard",  "--resume", "--robust",     "--crowd",       "--facing",
+        "--curve",  "--heat",   "--trace",  "--export-mps", "--alternatives"};
     constexpr const char* kOfFloor[] = {"--zone", "--weight"};
     constexpr const char* kOfTimes[] = {"--redundancy"};
     refuse(kOther);
+    if (const auto of_option = objectives_.asked()) refuse({{of_option->option().data()}});
     if (objective.of == ObjectiveChoice::Of::Path)
         refuse(kOfFloor);
     else
@@ -169,20 +170,22 @@ void ArrangeCommand::settleCameraRules() {
         throw UsageError("--privacy is about one room: leave out --robust rooms");
 }
 
-void ArrangeCommand::settleDemand() const {
+void ArrangeCommand::settleDemand() {
     objectives_.check(line_, options_.objective.get());
-    if (!options_.presence && !options_.objective) return;
-    const std::string name = options_.objective
-                                 ? "--objective " + std::string(options_.objective->word())
-                                 : "--presence";
+    const std::shared_ptr<const ObjectiveGroup> of_option = objectives_.asked();
+    if (of_option && options_.objective)
+        throw UsageError("--objective " + std::string(options_.objective->word()) + " counts " +
+                         std::string(options_.objective->counted().what) + ", " +
+                         std::string(of_option->option()) +
+                         " the ways of its own people: leave out one");
+    if (of_option) options_.objective = of_option;
+    if (!options_.objective) return;
+    const std::string name = of_option ? std::string(of_option->option())
+                                       : "--objective " + std::string(options_.objective->word());
     constexpr const char* kOfFloor[] = {"--zone",  "--weight",   "--facing", "--robust",
                                         "--crowd", "--refine",   "--proof",  "--judge",
                                         "--reso",  "--connected"};
-    const ObjectiveGroup::Counted counted =
-        options_.objective ? options_.objective->counted() : ObjectiveGroup::Counted();
-    if (options_.presence && options_.objective)
-        throw UsageError(name + " counts " + std::string(counted.what) +
-                         ", --presence the ways of its own people: leave out one");
+    const ObjectiveGroup::Counted counted = options_.objective->counted();
     for (const char* option : kOfFloor)
         if (line_.given(option) &&
             std::ranges::find(counted.options, std::string_view(option)) == counted.options.end())

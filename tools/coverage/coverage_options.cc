@@ -123,10 +123,10 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report",  "--material", "--prices", "--title",
-                                       "--project", "--client",   "--author", "--logo",
-                                       "--paper",   "--compare",  "--run",    "--facing",
-                                       "--privacy", "--presence", "--path",   "--localise"};
+    std::vector<const char*> single = {"--report",  "--material", "--prices",  "--title",
+                                       "--project", "--client",   "--author",  "--logo",
+                                       "--paper",   "--compare",  "--run",     "--facing",
+                                       "--privacy", "--path",     "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     for (const std::string& option : o.groups->options()) single.push_back(option.c_str());
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
@@ -203,13 +203,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "report by how many sensors robots and people were seen in the run that simrun "
               "--record wrote there, and where sight was lost, in numbers and on the map",
               Enters::BaseName);
-    line.parsed(
-        "--presence", "DIR|wander:N[,TIME]",
-        [&o](const std::string& text) { o.presence = parseWays(text); },
-        "report the share of people's ways on which PIR sensors and radars detect them within a "
-        "second: of the run that simrun --record wrote to DIR, or of N people who wander for TIME "
-        "(default 10min)",
-        Enters::Nothing);
     o.groups->declare(line);
     line.texts("--path", "FROM,TO", words.paths,
                "report the way between these two zones, over free floor, that sensors see for the "
@@ -263,13 +256,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     if (words.fans == "beams") o.map.fans = FanStyle::Beams;
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
-        if (auto presence = parsePresenceRequirement(text))
-            o.presence_requirements.push_back(*std::move(presence));
-        else
-            o.requirements.push_back(parseRequirement(text));
-    if (!o.presence_requirements.empty() && !o.presence)
-        throw UsageError("--require " + requirementText(o.presence_requirements.front()) +
-                         " judges ways of people: give them, too (--presence)");
+        if (!o.groups->takesRequirement(text)) o.requirements.push_back(parseRequirement(text));
+    o.groups->take(line);
     for (const std::string& text : words.facing) o.facing.push_back(parseFacing(text));
     for (const std::string& text : words.privacy) o.privacy.push_back(parsePrivacy(text));
     for (const std::string& text : words.paths)
@@ -287,7 +275,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkOne(line, o, words.to);
     else
         checkBatch(line, o);
-    o.groups->take(line);
     o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
     checkReportOptions(o.page, o.report);

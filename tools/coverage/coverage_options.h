@@ -10,10 +10,8 @@
 #include "cli/common_options.h"
 #include "cli/coverage_group.h"
 #include "cli/option_group.h"
-#include "cli/presence_paths.h"
 #include "cli/report_options.h"
 #include "coverage/camera_rules.h"
-#include "coverage/presence_requirement.h"
 #include "coverage/requirement.h"
 #include "report/coverage_formats.h"
 #include "report/map/map.h"
@@ -25,7 +23,6 @@ struct CoverageToolOptions {
     std::vector<std::string> operands;
     CoverageOptions measure;
     std::vector<Requirement> requirements;
-    std::vector<PresenceRequirement> presence_requirements;
     std::vector<std::string> zones;  ///< to report besides those of the room
     std::string junit;               ///< file for the verdicts on requirements; "": no file
     std::string command;             ///< its history line, without operands
@@ -39,8 +36,7 @@ struct CoverageToolOptions {
     std::optional<double> localise_to;       ///< metres; larger errors of positions count as this
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
-    std::optional<PathsChoice> presence;  ///< ways on which presence is measured
-    std::string run;                      ///< folder of a record of robots and people; "" without
+    std::string run;    ///< folder of a record of robots and people; "" without
     MapOptions map;
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;

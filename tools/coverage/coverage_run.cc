@@ -21,7 +21,6 @@
 #include "cli/common_options.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
-#include "cli/presence_paths.h"
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "cli/storey_operands.h"
@@ -30,13 +29,11 @@
 #include "report/coverage_formats.h"
 #include "report/map/depth_shades.h"
 #include "report/map/map.h"
-#include "report/presence_report.h"
 #include "report/trace_file.h"
 #include "scene/findings/findings.h"
 #include "scene/run/run_reader.h"
 #include "scene/sensor/ultrasound.h"
 #include "site/coupling.h"
-#include "site/site_presence.h"
 
 namespace ispace {
 
@@ -57,7 +54,6 @@ SiteParts SiteResults::parts(const SiteScene& building) const {
     addRules(parts, building, coverage, rules);
     if (objectives_sum) addSections<ObjectivesSection>(parts, objectives, *objectives_sum);
     if (run) addRun(parts, building, *run);
-    if (presence_sum) addSections<PresenceSection>(parts, presence, *presence_sum);
     for (std::size_t i = 0; i < found.parts.storeys.size(); ++i)
         join(parts.storeys[i], found.parts.storeys[i]);
     join(parts.sum, found.parts.sum);
@@ -90,7 +86,7 @@ void fitOptions(CoverageToolOptions& options, const SiteInput& input) {
         if (!folder.empty()) mustBeRecordOf(input, option, folder);
     };
     check_record("--run", options.run);
-    if (options.presence) check_record("--presence", options.presence->record);
+    options.groups->fit(input);
     if (options.format == nullptr) return;
     if (input.isOneRoom()) {
         options.common.output =
@@ -219,23 +215,6 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteI
 
 namespace {
 
-/// Measures --presence in each room: a record's ways, or wanderers on all free floor.
-void measurePresences(const CoverageToolOptions& options, const SiteInput& input,
-                      std::vector<std::string>& files, SiteResults& results) {
-    const PathsChoice& choice = *options.presence;
-    const std::vector<RoomPaths> ways =
-        waysIn(input, "--presence", choice, options.common.seed, options.measure.plane);
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-        if (!choice.record.empty()) files.push_back(RecordedFiles(ways[i].choice.record).robots);
-        Presence presence =
-            measurePresence(*results.coverage.floors[i], readPaths(ways[i], *input.rooms()[i]),
-                            options.measure.plane);
-        nameWholly(storeyOf(input, i), choice.record.empty(), presence);
-        results.presence.push_back(std::move(presence));
-    }
-    results.presence_sum = sumOverStoreys(results.presence);
-}
-
 /// Measures --path through the site, and --localise in each room and over all.
 void measureObjectives(const CoverageToolOptions& options, const SiteInput& input,
                        SiteResults& results) {
@@ -262,7 +241,6 @@ void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
         for (const std::string& warning : warnings) warn(options.common, "coverage", warning);
     }
     measureObjectives(options, input, results);
-    if (options.presence) measurePresences(options, input, files, results);
 }
 
 void measureRules(const CoverageToolOptions& options, const SiteInput& input,
@@ -403,12 +381,8 @@ std::vector<JunitCase> judge(std::span<const Requirement> requirements, const Si
 std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const SiteScene& building,
                                 const SiteResults& results) {
     std::vector<JunitCase> verdicts = judge(options.requirements, building, results.coverage);
-    if (results.presence_sum)
-        for (const PresenceRequirement& requirement : options.presence_requirements) {
-            Verdict verdict = checkRequirement(requirement, *results.presence_sum);
-            verdicts.push_back(
-                caseOf(requirementText(requirement), verdict.is_met, std::move(verdict.text)));
-        }
+    for (const JudgedShare& one : results.found.judged)
+        verdicts.push_back(caseOf(one.requirement, one.verdict.is_met, one.verdict.text));
     for (const JudgedRule& rule : judgedInSite(building, results.rules))
         if (rule.is_required)
             verdicts.push_back(caseOf(rule.rule, rule.is_met, rule.rule + ": " + rule.finding));

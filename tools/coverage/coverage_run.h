@@ -12,7 +12,6 @@
 #include "cli/coverage_group.h"
 #include "cli/site_operands.h"
 #include "coverage/coverage_options.h"
-#include "coverage/presence.h"
 #include "report/objective_report.h"
 #include "site/site_coverage.h"
 #include "site/site_rules.h"
@@ -29,8 +28,6 @@ struct SiteResults {
     std::vector<TriedPose> tried;    ///< of --trace
     std::vector<ObjectiveFigures> objectives;
     std::optional<ObjectiveFigures> objectives_sum;
-    std::vector<Presence> presence;
-    std::optional<Presence> presence_sum;
     CoverageFindings found;  ///< of extensions
 
     /// Returns the parts of a report that were asked for. They refer to the results.
@@ -59,7 +56,7 @@ void measure(const CoverageToolOptions& options, const SiteInput& input,
 /// another room or building
 std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteInput& input);
 
-/// Measures --run, --path, --localise and --presence.
+/// Measures --run, --path and --localise.
 void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
                    std::vector<std::string>& files, SiteResults& results);
 
@@ -77,7 +74,8 @@ std::vector<Diagnostic> sensorFindings(const SiteScene& building);
 /// precedes the requirement's text. \pre mustHaveZone()
 std::vector<JunitCase> judge(std::span<const Requirement> requirements, const SiteScene& building,
                              const SiteCoverage& coverage, const std::string& name = "");
-/// Returns a verdict for each requirement of presence and each rule that requires something, too.
+/// Returns a verdict for each requirement that extensions judge and each rule that requires
+/// something, too.
 std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const SiteScene& building,
                                 const SiteResults& results);
 

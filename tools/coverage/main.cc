@@ -76,10 +76,7 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
     for (const Requirement& requirement : options.requirements)
         add(requirementPhrase(requirement),
             checkRequirement(requirement, input.building, coverage));
-    if (results.presence_sum)
-        for (const PresenceRequirement& requirement : options.presence_requirements)
-            add(requirementPhrase(requirement),
-                checkRequirement(requirement, *results.presence_sum));
+    for (const JudgedShare& one : results.found.judged) add(one.phrase, one.verdict);
     page.parts = results.parts(input.building);
     page.findings = sensorFindings(input.building);
     page.media =
@@ -106,15 +103,14 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     if (!options.trace.empty()) files.push_back(options.trace);
     measure(options, input, files, results);
     measureMotion(options, input, files, results);
-    if (options.format != nullptr) {
-        writeProducts(options, input, results);
-        writeDependencies(options.common, files);
-    }
+    if (options.format != nullptr) writeProducts(options, input, results);
     measureRules(options, input, results);
     // Last: once a signal has ended a search, only the results are written.
     options.groups->measure({input, results.coverage, options.measure, options.requirements,
                              options.common, options.rules},
                             results.found);
+    files.insert(files.end(), results.found.files.begin(), results.found.files.end());
+    if (options.format != nullptr) writeDependencies(options.common, files);
     const std::vector<JunitCase> verdicts = judgeAll(options, input.building, results);
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
     if (const std::string text = writeMaterialOf(options.page, input.rooms()); !text.empty())

@@ -27,6 +27,16 @@ bool CoverageExtensions::isAsked() const {
                        [](const auto& group) { return group->isAsked(); });
 }
 
+bool CoverageExtensions::takesRequirement(const std::string& text) const {
+    return std::any_of(groups_.begin(), groups_.end(),
+                       [&text](const auto& group) { return group->takesRequirement(text); });
+}
+
+void CoverageExtensions::fit(const SiteInput& input) const {
+    for (const auto& group : groups_)
+        if (group->isAsked()) group->fit(input);
+}
+
 void CoverageExtensions::measure(const MeasuredSite& site, CoverageFindings& findings) const {
     for (const auto& group : groups_)
         if (group->isAsked()) group->measure(site, findings);

@@ -27,9 +27,18 @@ struct MeasuredSite {
     const SceneRules& rules;
 };
 
+/// What became of a `--require` that a group judges.
+struct JudgedShare {
+    std::string requirement;  ///< as given
+    std::string phrase;       ///< for a page
+    Verdict verdict;
+};
+
 /// What groups find out.
 struct CoverageFindings {
     SiteParts parts = {};  ///< sections of the report; they live as long as their groups
+    std::vector<JudgedShare> judged = {};
+    std::vector<std::string> files = {};  ///< that were read, for -MD
     /// The signal that ended a search early, 0 without. TERM and INT are ignored afterwards: write
     /// what is there, and endBySignal().
     int signal = 0;
@@ -46,6 +55,12 @@ class CoverageGroup {
     /// (CommandLine::valuesOf). Opens no file. \throws UsageError
     virtual void take(const CommandLine& line) = 0;
     [[nodiscard]] virtual bool isAsked() const = 0;
+    /// Returns true if it judges what a `--require` says, and keeps that. It is called before
+    /// take(). \throws UsageError
+    [[nodiscard]] virtual bool takesRequirement(const std::string& /*text*/) { return false; }
+    /// Checks that records belong to the site, before it is measured. \pre isAsked()
+    /// \throws UsageError
+    virtual void fit(const SiteInput& /*input*/) const {}
     /// Adds sections to the findings. \pre isAsked() \throws UsageError for names that the site
     /// lacks
     virtual void measure(const MeasuredSite& site, CoverageFindings& findings) = 0;
@@ -66,6 +81,8 @@ class CoverageExtensions {
     /// As those of CoverageGroup, for all of them.
     void take(const CommandLine& line) const;
     [[nodiscard]] bool isAsked() const;
+    [[nodiscard]] bool takesRequirement(const std::string& text) const;
+    void fit(const SiteInput& input) const;
     void measure(const MeasuredSite& site, CoverageFindings& findings) const;
     /// Returns the names of the options ("--suggest").
     [[nodiscard]] const std::vector<std::string>& options() const { return options_; }

@@ -19,8 +19,11 @@ namespace ispace {
 class WordGroup {
   public:
     virtual ~WordGroup() = default;
-    /// Returns the word that asks for it ("track").
+    /// Returns the word that asks for it ("track"); "" if an option of its own does.
     [[nodiscard]] virtual std::string_view word() const = 0;
+    /// Returns that option ("--presence"), and whether it is given.
+    [[nodiscard]] virtual std::string_view option() const { return ""; }
+    [[nodiscard]] virtual bool isAsked() const { return false; }
     /// Says what the word means, for the help of the option.
     [[nodiscard]] virtual std::string_view help() const = 0;
     /// Declares the options, bound to members; as OptionGroup::declare().
@@ -55,23 +58,26 @@ class WordExtensions {
     [[nodiscard]] std::string help() const {
         std::string text;
         for (const Member& member : members_)
-            text.append("; ")
-                .append(member.group->word())
-                .append(", ")
-                .append(member.group->help());
+            if (!member.group->word().empty())
+                text.append("; ")
+                    .append(member.group->word())
+                    .append(", ")
+                    .append(member.group->help());
         return text;
     }
     /// Returns their words, those that this build lacks last.
     [[nodiscard]] std::vector<std::string> all() const {
         std::vector<std::string> words;
-        for (const Member& member : members_) words.emplace_back(member.group->word());
+        for (const Member& member : members_)
+            if (!member.group->word().empty()) words.emplace_back(member.group->word());
         for (const WordRow<Group>& row : missing_) words.emplace_back(row.missing);
         return words;
     }
     /// Returns ", WORD" for each of those that this build has.
     [[nodiscard]] std::string words() const {
         std::string text;
-        for (const Member& member : members_) text.append(", ").append(member.group->word());
+        for (const Member& member : members_)
+            if (!member.group->word().empty()) text.append(", ").append(member.group->word());
         return text;
     }
     void declare(CommandLine& line) {
@@ -88,11 +94,17 @@ class WordExtensions {
     /// extension
     [[nodiscard]] std::shared_ptr<Group> find(std::string_view word) const {
         for (const Member& member : members_)
-            if (member.group->word() == word) return member.group;
+            if (!word.empty() && member.group->word() == word) return member.group;
         for (const WordRow<Group>& row : missing_)
             if (row.missing == word)
                 throw UsageError('`' + std::string(word) + "`: it belongs to the extension " +
                                  std::string(row.extension) + ", which this build lacks");
+        return nullptr;
+    }
+    /// Returns the group of which the own option is given; null if none is.
+    [[nodiscard]] std::shared_ptr<Group> asked() const {
+        for (const Member& member : members_)
+            if (member.group->isAsked()) return member.group;
         return nullptr;
     }
     /// Checks that the options of a word are given with it alone.
@@ -100,7 +112,8 @@ class WordExtensions {
     void check(const CommandLine& line, const Group* asked) const {
         for (const Member& member : members_)
             for (const std::string& name : member.options)
-                if (member.group.get() != asked && line.given(name))
+                if (member.group.get() != asked && name != member.group->option() &&
+                    line.given(name))
                     throw UsageError(name + " goes with " + option_ + ' ' +
                                      std::string(member.group->word()));
     }

@@ -20,7 +20,6 @@
 
 #include "base/error.h"
 #include "cli/common_options.h"
-#include "cli/presence_paths.h"
 #include "extensions/postures/deeds.h"
 #include "extensions/postures/posture.h"
 #include "extensions/postures/postures_test.h"
@@ -619,12 +618,6 @@ TEST(Deeds, FallsEndWays) {
     EXPECT_NE(home.marks().find("script: bob stands: it stands"), std::string::npos);
     // It goes on with its way.
     EXPECT_GT(home.at("bob").position.x, where.x + 2);
-}
-
-TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
-    const Scene room = sceneOf("human id=ann at=0,0\n",
-                               std::string(kRoom) + "cube id=cup at=2,0 size=0.1 carried=ann\n");
-    EXPECT_EQ(readPaths(parseWays("wander:2,5s"), room, 7).people.size(), 2U);
 }
 
 TEST(Deeds, ThingsMayBecomeOthers) {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scene/run/people_paths.h"
+#include "extensions/presence/people_paths.h"
 
 namespace ispace {
 

@@ -12,9 +12,9 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "coverage/crowd.h"
+#include "extensions/presence/people_paths.h"
 #include "geom/tolerance.h"
 #include "scene/bodies.h"
-#include "scene/run/people_paths.h"
 #include "sense/motion_sense.h"
 #include "sense/scan.h"
 

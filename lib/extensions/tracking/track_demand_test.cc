@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "scene/run/people_paths.h"
+#include "extensions/presence/people_paths.h"
 #include "sense/detection.h"
 #include "support/test_arrange.h"
 

@@ -2,7 +2,7 @@
 #include "extensions/tracking/track_objective.h"
 
 #include "arrange/arrange.h"
-#include "cli/presence_paths.h"
+#include "extensions/presence/presence_paths.h"
 #include "extensions/tracking/track_demand.h"
 #include "scene/run/run_reader.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/cell_set.h"
-#include "scene/run/people_paths.h"
+#include "extensions/presence/people_paths.h"
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "coverage/presence.h"
+#include "extensions/presence/presence.h"
 #include "site/site_scene.h"
 
 namespace ispace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/presence_paths.h"
+#include "extensions/presence/presence_paths.h"
 
 #include <chrono>
 #include <optional>
@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "arrange/presence_demand.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/run_files.h"
@@ -134,20 +133,6 @@ std::vector<RoomPaths> waysIn(const SiteInput& site, const std::string& option,
 
 PeoplePaths readPaths(const RoomPaths& ways, const Scene& scene) {
     return ways.isEmpty() ? PeoplePaths() : readPaths(ways.choice, scene, ways.seed);
-}
-
-std::vector<std::shared_ptr<const Demand>> demandsOfPresence(const PathsChoice& choice,
-                                                             const SiteInput& site,
-                                                             std::uint64_t seed, double plane,
-                                                             std::vector<std::string>& files) {
-    std::vector<std::shared_ptr<const Demand>> demands;
-    const std::vector<RoomPaths> ways = waysIn(site, "--presence", choice, seed, plane);
-    for (std::size_t i = 0; i < ways.size(); ++i) {
-        if (!choice.record.empty()) files.push_back(RecordedFiles(ways[i].choice.record).robots);
-        demands.push_back(presenceDemand(
-            std::make_shared<PeoplePaths>(readPaths(ways[i], *site.rooms()[i])), plane));
-    }
-    return demands;
 }
 
 }  // namespace ispace

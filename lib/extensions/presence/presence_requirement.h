@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "coverage/presence.h"
 #include "coverage/requirement.h"
+#include "extensions/presence/presence.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/presence_requirement.h"
+#include "extensions/presence/presence_requirement.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests the search for sensors that detect people on their ways.
-#include "arrange/presence_demand.h"
+#include "extensions/presence/presence_demand.h"
 
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "coverage/presence.h"
+#include "extensions/presence/presence.h"
 #include "support/test_arrange.h"
 
 namespace ispace {

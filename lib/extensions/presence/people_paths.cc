@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/run/people_paths.h"
+#include "extensions/presence/people_paths.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,14 +10,12 @@
 #include <vector>
 
 #include "cli/site_operands.h"
-#include "scene/run/people_paths.h"
+#include "extensions/presence/people_paths.h"
 #include "scene/scene.h"
 #include "sim/sim_time.h"
 #include "site/site_scene.h"
 
 namespace ispace {
-
-class Demand;
 
 /// The ways of people that `--presence` counts.
 struct PathsChoice {
@@ -55,11 +53,5 @@ std::vector<RoomPaths> waysIn(const SiteInput& site, const std::string& option,
                               const PathsChoice& choice, std::uint64_t seed, double plane);
 /// Cuts the ways in a room into pieces.
 PeoplePaths readPaths(const RoomPaths& ways, const Scene& scene);
-
-/// Returns presenceDemand() of the ways in each room. \param files receives those that were read
-std::vector<std::shared_ptr<const Demand>> demandsOfPresence(const PathsChoice& choice,
-                                                             const SiteInput& site,
-                                                             std::uint64_t seed, double plane,
-                                                             std::vector<std::string>& files);
 
 }  // namespace ispace

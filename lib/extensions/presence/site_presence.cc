@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "site/site_presence.h"
+#include "extensions/presence/site_presence.h"
 
 #include <algorithm>
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/presence_report.h"
+#include "extensions/presence/presence_report.h"
 
 #include <vector>
 

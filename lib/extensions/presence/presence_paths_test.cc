@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/presence_paths.h"
+#include "extensions/presence/presence_paths.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "coverage/presence.h"
+#include "extensions/presence/presence.h"
 #include "report/report_section.h"
 
 namespace ispace {

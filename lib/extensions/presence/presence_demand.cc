@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/presence_demand.h"
+#include "extensions/presence/presence_demand.h"
 
 #include <utility>
 
 #include "base/error.h"
 #include "base/number.h"
-#include "coverage/presence.h"
+#include "extensions/presence/presence.h"
 #include "sense/motion_sense.h"
 
 namespace ispace {

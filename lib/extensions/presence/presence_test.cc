@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/presence.h"
+#include "extensions/presence/presence.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "arrange/demand.h"
-#include "scene/run/people_paths.h"
+#include "extensions/presence/people_paths.h"
 
 namespace ispace {
 

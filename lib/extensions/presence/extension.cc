@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/extension.h"
+#include "extensions/presence/presence_options.h"
+
+namespace ispace::extension {
+
+Extension presence() {
+    return {.name = "presence", .objective = makePresenceObjective, .coverage = makePresence};
+}
+
+}  // namespace ispace::extension
