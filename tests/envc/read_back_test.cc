@@ -14,6 +14,7 @@
 #include "env/level.h"
 #include "extensions/cad/cad.h"
 #include "extensions/gazebo/gazebo.h"
+#include "extensions/meshes/meshes_test.h"
 #include "io/exporters.h"
 #include "io/importers.h"
 #include "record/text.h"
@@ -135,6 +136,7 @@ std::map<std::string, int> countsOf(const std::vector<Record>& records) {
 
 // "A room with a lamp cannot become IFC" is an error of the format, never of the room.
 TEST(ExportFormats, EachRecordThroughEachFormatAndBack) {
+    testing::addMeshesOnce();
     addImporters(cadImporters());
     addImporters(gazeboImporters());
     const testing::TestFolder folder;

@@ -287,8 +287,8 @@ void ArrangeCommand::addGoalOptions() {
             options_.how.objective =
                 options_.objective ? ObjectiveChoice() : readObjective(text, objectives_.words());
         },
-        "quantity to maximise: coverage (default); path:FROM,TO, the length for which an intruder "
-        "between two zones is seen on the way that is seen least; localise[:M], "
+        "quantity to maximise: coverage (default); path:FROM,TO, the length seen of the way "
+        "between two zones that is seen least; localise[:M], "
         "small errors of positions of tags and people, M at most (default 1)" +
             objectives_.help(),
         Enters::History);

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "extensions/gazebo/gazebo.h"
 #include "extensions/gazebo/sdf_files.h"
+#include "extensions/meshes/meshes_test.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "support/test_folder.h"
@@ -208,6 +209,7 @@ TEST_F(SdfIncludes, TheLatestVersionIsRead) {
 }
 
 TEST_F(SdfIncludes, MeshesLieBesideTheModel) {
+    testing::addMeshesOnce();
     put("lamp/foot.stl",
         "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
         "endfacet\nendsolid\n");
