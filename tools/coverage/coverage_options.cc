@@ -257,7 +257,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
         if (!o.groups->takesRequirement(text)) o.requirements.push_back(parseRequirement(text));
-    o.groups->take(line);
     for (const std::string& text : words.facing) o.facing.push_back(parseFacing(text));
     for (const std::string& text : words.privacy) o.privacy.push_back(parsePrivacy(text));
     for (const std::string& text : words.paths)
@@ -275,6 +274,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkOne(line, o, words.to);
     else
         checkBatch(line, o);
+    o.groups->take(line);
     o.command = line.historyLine({});
     if (line.given("--report")) checkReport(o);
     checkReportOptions(o.page, o.report);

@@ -103,14 +103,17 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     if (!options.trace.empty()) files.push_back(options.trace);
     measure(options, input, files, results);
     measureMotion(options, input, files, results);
-    if (options.format != nullptr) writeProducts(options, input, results);
+    const MeasuredSite site{input,          results.coverage, options.measure, options.requirements,
+                            options.common, options.rules};
+    options.groups->measure(site, results.found, false);
+    files.insert(files.end(), results.found.files.begin(), results.found.files.end());
+    if (options.format != nullptr) {
+        writeProducts(options, input, results);
+        writeDependencies(options.common, files);
+    }
     measureRules(options, input, results);
     // Last: once a signal has ended a search, only the results are written.
-    options.groups->measure({input, results.coverage, options.measure, options.requirements,
-                             options.common, options.rules},
-                            results.found);
-    files.insert(files.end(), results.found.files.begin(), results.found.files.end());
-    if (options.format != nullptr) writeDependencies(options.common, files);
+    options.groups->measure(site, results.found, true);
     const std::vector<JunitCase> verdicts = judgeAll(options, input.building, results);
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
     if (const std::string text = writeMaterialOf(options.page, input.rooms()); !text.empty())

@@ -37,9 +37,10 @@ void CoverageExtensions::fit(const SiteInput& input) const {
         if (group->isAsked()) group->fit(input);
 }
 
-void CoverageExtensions::measure(const MeasuredSite& site, CoverageFindings& findings) const {
+void CoverageExtensions::measure(const MeasuredSite& site, CoverageFindings& findings,
+                                 bool searches) const {
     for (const auto& group : groups_)
-        if (group->isAsked()) group->measure(site, findings);
+        if (group->isAsked() && group->searches() == searches) group->measure(site, findings);
 }
 
 }  // namespace ispace

@@ -61,6 +61,9 @@ class CoverageGroup {
     /// Checks that records belong to the site, before it is measured. \pre isAsked()
     /// \throws UsageError
     virtual void fit(const SiteInput& /*input*/) const {}
+    /// Returns true for a search that may take long, and that a signal ends: it follows the others,
+    /// and the product.
+    [[nodiscard]] virtual bool searches() const { return false; }
     /// Adds sections to the findings. \pre isAsked() \throws UsageError for names that the site
     /// lacks
     virtual void measure(const MeasuredSite& site, CoverageFindings& findings) = 0;
@@ -83,7 +86,8 @@ class CoverageExtensions {
     [[nodiscard]] bool isAsked() const;
     [[nodiscard]] bool takesRequirement(const std::string& text) const;
     void fit(const SiteInput& input) const;
-    void measure(const MeasuredSite& site, CoverageFindings& findings) const;
+    /// Those that search, or the others.
+    void measure(const MeasuredSite& site, CoverageFindings& findings, bool searches) const;
     /// Returns the names of the options ("--suggest").
     [[nodiscard]] const std::vector<std::string>& options() const { return options_; }
 

@@ -48,6 +48,8 @@ class AdviceGroup final : public CoverageGroup {
 
     [[nodiscard]] bool isAsked() const override { return most_.has_value(); }
 
+    [[nodiscard]] bool searches() const override { return true; }
+
     void measure(const MeasuredSite& site, CoverageFindings& findings) override {
         SuggestOptions wanted{.most = static_cast<std::size_t>(*most_),
                               .measure = site.how,

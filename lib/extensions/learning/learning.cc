@@ -79,7 +79,7 @@ class Learning : public OptionGroup {
   public:
     void declare(CommandLine& line) override {
         constexpr int kMostWorlds = 1'000'000, kMostPeople = 1000;
-        line.group("RayScenes for learning");
+        line.group("Worlds for learning");
         line.count("--vector", "N", worlds_, 1, kMostWorlds,
                    "run N worlds of the room for a learner, which sends requests on standard input",
                    Enters::Nothing);
