@@ -142,7 +142,7 @@ class LeastSeenPathsLayer final : public MapLayer {
         picture.pop();
     }
 
-    std::optional<LegendBlock> legend() const override {
+    [[nodiscard]] std::optional<LegendBlock> legend() const override {
         if (figures_.ways.empty()) return std::nullopt;
         using Sign = LegendItem::Sign;
         LegendBlock block{"Ways that are seen least", {}};

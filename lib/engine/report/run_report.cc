@@ -241,7 +241,7 @@ class RunLayer final : public MapLayer {
             drawChosenRing(picture, map.view * run_.losses[i].place, 0.5 * map.em, map.em);
     }
 
-    std::optional<LegendBlock> legend() const override {
+    [[nodiscard]] std::optional<LegendBlock> legend() const override {
         using Sign = LegendItem::Sign;
         LegendBlock block{"Ways seen by", {}, {"time", "way"}};
         const auto share = [](const std::vector<double>& shares, std::size_t k) {
