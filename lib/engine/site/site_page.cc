@@ -81,8 +81,8 @@ bool isEmpty(const Coverage& coverage) {
 PageSection storeySection(const SitePageInput& input, std::size_t storey) {
     const Storey& own = input.building.document.storeys[storey];
     const Coverage& coverage = input.coverage.storeys[storey];
-    static const ReportParts kNone;
-    const ReportParts& parts = input.parts.storeys.empty() ? kNone : input.parts.storeys[storey];
+    static const ReportParts none;
+    const ReportParts& parts = input.parts.storeys.empty() ? none : input.parts.storeys[storey];
     const PageSubject subject{PageSubject::Of::Storey, coverage.report,
                               input.coverage.floors[storey].get(), &coverage};
     const std::vector<PageAdditions> additions = additionsOf(parts, subject);
