@@ -67,8 +67,8 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
         "draw the record of --replay there instead of serving it: the ways (.png, .svg, "
         ".pdf) or a film (.y4m, .gif; a folder or a pattern with %d for pictures)");
     line_.essential({"--version", "--clock", "--dt", "--until", "--noise", "--script", "--record",
-                     "--report", "--replay", "--listen", "--storey", "--output",
-                     "--quiet", "--threads", "--seed"});
+                     "--report", "--replay", "--listen", "--storey", "--output", "--quiet",
+                     "--threads", "--seed"});
     line_.parse(argc, argv);
     options_.task =
         tool_extensions.task(line_, {options_.common, options_.rules, options_.operands});

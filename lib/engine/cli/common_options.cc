@@ -337,7 +337,6 @@ std::string commandOf(std::string command, std::span<const Edit> edits) {
     return command + " -o changed.env";
 }
 
-
 void addStoreyOption(CommandLine& line, SceneRules& rules, const std::string& without) {
     line.texts(
         "--storey", "ID|GLOB", rules.storeys.words,

@@ -15,13 +15,13 @@
 #include <vector>
 
 #include "arrange/arrange.h"
-#include "extensions/advice/coarse_sight.h"
-#include "extensions/advice/suggestion.h"
 #include "coverage/exact_shares.h"
 #include "coverage/facing_meter.h"
 #include "coverage/private_floor.h"
 #include "coverage/requirement.h"
 #include "coverage/visible_area.h"
+#include "extensions/advice/coarse_sight.h"
+#include "extensions/advice/suggestion.h"
 #include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
 

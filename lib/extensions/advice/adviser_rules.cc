@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
-#include "extensions/advice/adviser.h"
 #include "coverage/camera_rules.h"
 #include "coverage/private_floor.h"
 #include "env/zone.h"
+#include "extensions/advice/adviser.h"
 
 namespace ispace {
 

@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "extensions/advice/adviser.h"
-#include "extensions/advice/coarse_sight.h"
 #include "arrange/placement_rules.h"
-#include "extensions/advice/suggested_moves.h"
 #include "base/number.h"
 #include "env/element_schemas.h"
+#include "extensions/advice/adviser.h"
+#include "extensions/advice/coarse_sight.h"
+#include "extensions/advice/suggested_moves.h"
 #include "scene/findings/findings.h"
 
 namespace ispace {

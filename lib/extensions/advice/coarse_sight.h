@@ -12,12 +12,12 @@
 #include <tuple>
 #include <vector>
 
-#include "extensions/advice/suggestion.h"
 #include "base/cell_set.h"
 #include "coverage/counted_cells.h"
 #include "coverage/plane_cells.h"
 #include "coverage/target.h"
 #include "coverage/visible_area.h"
+#include "extensions/advice/suggestion.h"
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 

@@ -56,8 +56,7 @@ std::vector<RunSuggestion> suggestForRun(const RecordedRun& run, const SiteScene
             using Kind = Suggestion::Kind;
             if (change.kind != Kind::Add && change.kind != Kind::Turn && change.kind != Kind::Shift)
                 continue;
-            const auto seen =
-                seenShare(run, editedStorey(building, i, *whole[i], change.edits));
+            const auto seen = seenShare(run, editedStorey(building, i, *whole[i], change.edits));
             if (seen && *seen > before) found.push_back({std::move(change), *seen});
         }
     }
@@ -95,11 +94,11 @@ class RunAdvice final : public RecordGroup {
     void declare(CommandLine& line) override {
         constexpr int kSuggestions = 3;  // one of each kind
         line.countOr(
-        "--suggest", most_, kSuggestions, 1, kSuggestions,
-        "with --record: at the end of the run report up to N changes of a sensor, to add, "
-        "turn or move, after which robots and people would have been seen longer, each "
-        "with its gain and its command",
-        Enters::Nothing);
+            "--suggest", most_, kSuggestions, 1, kSuggestions,
+            "with --record: at the end of the run report up to N changes of a sensor, to add, "
+            "turn or move, after which robots and people would have been seen longer, each "
+            "with its gain and its command",
+            Enters::Nothing);
         line.essential({"--suggest"});
     }
     void take(const CommandLine& line) override {

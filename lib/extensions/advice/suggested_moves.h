@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "extensions/advice/suggestion.h"
 #include "base/cell_set.h"
 #include "coverage/coverage.h"
 #include "coverage/target.h"
 #include "coverage/visible_area.h"
+#include "extensions/advice/suggestion.h"
 #include "scene/scene.h"
 
 namespace ispace {

@@ -9,15 +9,15 @@
 #include <optional>
 #include <utility>
 
-#include "extensions/advice/adviser.h"
 #include "arrange/arrange.h"
-#include "extensions/advice/coarse_sight.h"
 #include "arrange/floor_tiles.h"
 #include "arrange/placement_rules.h"
 #include "arrange/refine.h"
 #include "base/number.h"
 #include "coverage/visible_area.h"
 #include "env/level.h"
+#include "extensions/advice/adviser.h"
+#include "extensions/advice/coarse_sight.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "sense/scan.h"
