@@ -128,7 +128,7 @@ std::string roomsText(const Arrangement& arrangement) {
 
 std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) {
     const ArrangeOptions& how = work.how;
-    const std::string proven =
+    std::string proven =
         arrangement.proof ? "arrange: " + arrangement.proof->finding(how, arrangement) + '\n' : "";
     if (arrangement.proof && arrangement.proof->replacesSearch()) return proven;
     std::ptrdiff_t standing = 0;

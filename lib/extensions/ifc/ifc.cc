@@ -88,18 +88,14 @@ void addIfc() {
     static constexpr ExportFormat kExporters[] = {
         {.name = "ifc",
          .suffix = "ifc",
-         .help =
-             "A building of one storey in IFC4, in metres and degrees: walls with their openings, "
-             "doors and windows, rooms and zones as spaces with areas, furniture, pillars and "
-             "other "
-             "objects, and the sensors (IfcSensor; cameras as IfcAudioVisualAppliance) with a "
-             "property "
-             "set ispace_Sensor of Model, Height, Heading, Tilt, Roll, FieldOfView, "
-             "FieldOfViewVertical and Range. Rooms end at the faces of walls; walls without "
-             "thickness "
-             "become 5 mm thick. envc skips robots, people and their sensors, and a warning "
-             "reports "
-             "their number. GUIDs depend on the records alone, and the file has no date.",
+         .help = "A building of one storey in IFC4, in metres and degrees: walls with their "
+                 "openings, doors and windows, rooms and zones as spaces with areas, furniture, "
+                 "pillars and other objects, and the sensors (IfcSensor; cameras as "
+                 "IfcAudioVisualAppliance) with a property set ispace_Sensor of Model, Height, "
+                 "Heading, Tilt, Roll, FieldOfView, FieldOfViewVertical and Range. Rooms end at "
+                 "the faces of walls; walls without thickness become 5 mm thick. envc skips "
+                 "robots, people and their sensors, and a warning reports their number. GUIDs "
+                 "depend on the records alone, and the file has no date.",
          .write = [](const Scene& scene, const Document& /*document*/,
                      const ExportOptions& options) { return writeIfc(scene, options.title); }},
     };

@@ -214,6 +214,7 @@ FacingRule parseFacing(std::string_view text) {
     rule.zone = rest.substr(0, end);
     const std::string_view within =
         rest.substr(end + 1, rule.is_by_doors ? std::string_view::npos : last - first - 1);
+    if (!isAngle(within) || !isAngle(rest.substr(last + 1))) throw UsageError(wanted);
     rule.within = angleOf(within);
     if (!rule.is_by_doors) rule.heading = angleOf(rest.substr(last + 1));
     check_angle();

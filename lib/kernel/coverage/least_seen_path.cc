@@ -54,6 +54,7 @@ class PathFloor {
         const std::vector<std::optional<Point2>> starts = byRegion(from_), goals = byRegion(to_);
         const auto has = [](const std::vector<std::optional<Point2>>& points) {
             std::vector<bool> any;
+            any.reserve(points.size());
             for (const auto& point : points) any.push_back(point.has_value());
             return any;
         };
