@@ -43,6 +43,9 @@ for name, rows in offers.items():
         elif owner == "proof":
             if f" {offer}|" not in (about := said("arrange", "--help", "--proof")) and f"|{offer}" not in about:
                 faults.append(f"{name} has no proof {offer}: {about}")
+        elif owner == "requirement":
+            if "is no share" in (about := said("coverage", "-", "--require", f"{offer}:50%", text="")):
+                faults.append(f"{name} judges no {offer}: {about}")
         elif owner == "format":
             read = any("addImporters(" in text
                        for text in (source.read_text() for source in (extensions / name).glob("*.cc")))
@@ -60,6 +63,8 @@ for tool in TOOLS:
         found = options_of(said(tool, "--help", word)) if about else []
         if about and not found:
             faults.append(f"{tool} --help {word} lists no option")
+        if re.search("[a-z][A-Z]", title):
+            faults.append(f"{tool} --help has the heading {title}")
         faults += [f"{about[1]} does not list {tool} {option}" for option in found if (tool, option) not in offers[about[1]]]
 
 print("\n".join(faults) or f"{sum(map(len, offers.values()))} offers of {len(offers)} extensions")

@@ -34,7 +34,7 @@ Value valueOf(const std::string& word, const Value (&values)[kCount]) {
 
 void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
-    options_.proof = proofs_.find(words_.proof);
+    options_.proof = ofOption("--proof", [this] { return proofs_.find(words_.proof); });
     proofs_.check(line_, options_.proof.get());
     std::vector<const char*> single = {"--curve",
                                        "--trace",
@@ -125,22 +125,21 @@ void ArrangeCommand::settleRobust() {
 void ArrangeCommand::settleObjective() {
     const ObjectiveChoice& objective = options_.how.objective;
     if (objective.isCoverage()) return;
-    const auto refuse = [this](std::span<const char* const> others) {
-        for (const char* other : others)
-            if (line_.given(other))
+    const auto refuse = [this](std::span<const std::string_view> others) {
+        for (const std::string_view other : others)
+            if (line_.given(std::string(other)))
                 throw UsageError(
-                    std::string("--objective path and localise are goals of their own: leave "
-                                "out ") +
-                    other);
+                    "--objective path and localise are goals of their own: leave out " +
+                    std::string(other));
     };
-    constexpr const char* kOther[] = {
+    constexpr std::string_view kOther[] = {
         "--target", "--budget", "--refine", "--connected",  "--reso",        "--judge",
         "--proof",  "--shard",  "--resume", "--robust",     "--crowd",       "--facing",
         "--curve",  "--heat",   "--trace",  "--export-mps", "--alternatives"};
-    constexpr const char* kOfFloor[] = {"--zone", "--weight"};
-    constexpr const char* kOfTimes[] = {"--redundancy"};
+    constexpr std::string_view kOfFloor[] = {"--zone", "--weight"};
+    constexpr std::string_view kOfTimes[] = {"--redundancy"};
     refuse(kOther);
-    if (const auto of_option = objectives_.asked()) refuse({{of_option->option().data()}});
+    if (const auto of_option = objectives_.asked()) refuse(std::vector{of_option->option()});
     if (objective.of == ObjectiveChoice::Of::Path)
         refuse(kOfFloor);
     else
@@ -174,10 +173,8 @@ void ArrangeCommand::settleDemand() {
     objectives_.check(line_, options_.objective.get());
     const std::shared_ptr<const ObjectiveGroup> of_option = objectives_.asked();
     if (of_option && options_.objective)
-        throw UsageError("--objective " + std::string(options_.objective->word()) + " counts " +
-                         std::string(options_.objective->counted().what) + ", " +
-                         std::string(of_option->option()) +
-                         " the ways of its own people: leave out one");
+        throw UsageError("--objective " + std::string(options_.objective->word()) + " and " +
+                         std::string(of_option->option()) + " both say what counts: leave out one");
     if (of_option) options_.objective = of_option;
     if (!options_.objective) return;
     const std::string name = of_option ? std::string(of_option->option())

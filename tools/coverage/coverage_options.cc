@@ -175,12 +175,12 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                "report this part of the floor, too, as a zone: rect:X,Y,X,Y, poly:X,Y;X,Y;..., or "
                "door:GLOB[,M] within M of doors (1.5m), named DOOR-zone",
                Enters::History);
-    line.group("Requirements, comparison, advice");
+    line.group("Requirements, comparison");
     line.texts("--require", "SHARE", words.requirements,
                "exit with 3 if less is covered, by exact metrics where they are known: 95% of the "
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class or level "
-               "identify:95%, discern:NAME=95%; of the ways of --presence presence:95%, "
-               "presence:PERSON=95%",
+               "identify:95%, discern:NAME=95%" +
+                   o.groups->requirements(),
                Enters::History);
     line.texts(
         "--facing", "ZONE[,DEG[,HEADING]][=SHARE]", words.facing,
@@ -203,7 +203,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "report by how many sensors robots and people were seen in the run that simrun "
               "--record wrote there, and where sight was lost, in numbers and on the map",
               Enters::BaseName);
-    o.groups->declare(line);
     line.texts("--path", "FROM,TO", words.paths,
                "report the way between these two zones, over free floor, that sensors see for the "
                "shortest length, and draw it",
@@ -212,6 +211,7 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                 "report the error with which the sensors localise a tag or a person, over the "
                 "floor; in the mean, errors above this and floor without a position count as this",
                 Enters::History);
+    o.groups->declare(line);
     line.group("The map");
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
                 Enters::History, missingExporter);
@@ -257,8 +257,10 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
         if (!o.groups->takesRequirement(text)) o.requirements.push_back(parseRequirement(text));
-    for (const std::string& text : words.facing) o.facing.push_back(parseFacing(text));
-    for (const std::string& text : words.privacy) o.privacy.push_back(parsePrivacy(text));
+    for (const std::string& text : words.facing)
+        o.facing.push_back(ofOption("--facing", [&] { return parseFacing(text); }));
+    for (const std::string& text : words.privacy)
+        o.privacy.push_back(ofOption("--privacy", [&] { return parsePrivacy(text); }));
     for (const std::string& text : words.paths)
         o.paths.push_back(ofOption("--path", [&] { return parseWay(text); }));
     o.measure.whole_densities =

@@ -115,8 +115,6 @@ void SimrunCommand::declareRun() {
                "ways of robots and people and the floor that sensors see (.html, .pdf), or as JSON "
                "(.json)",
                Enters::Nothing);
-    o.records = std::make_shared<RecordExtensions>(extensions().records());
-    o.records->declare(line_);
     line_.switchFlag("--record-readings", "--no-record-readings", o.records_readings,
                      "record the readings of sensors (default)",
                      "leave them out: events and states remain", Enters::Nothing);
@@ -137,6 +135,8 @@ void SimrunCommand::declareRun() {
         [&o](const std::string& text) { o.max_recorded = byteCount(text); },
         "end the run once its record is larger, e.g. 500M (default 16G)", Enters::Nothing);
     addRecordForm(line_, o.record_form);
+    o.records = std::make_shared<RecordExtensions>(extensions().records());
+    o.records->declare(line_);
 }
 
 void SimrunCommand::declareJudgement() {

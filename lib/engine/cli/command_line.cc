@@ -640,6 +640,8 @@ std::string CommandLine::helpText(const std::string& about) const {
     for (std::size_t i = 0; i < d.entries.size() && !page.options.empty(); ++i)
         if (!is_named(i) && mentions(d.entries[i].help, name)) add(i, "");
     if (!page.options.empty()) return ispace::helpText(page);
+    if (const auto hint = d.renamed.find(name); found.empty() && hint != d.renamed.end())
+        throw UsageError("--help " + about + ": " + hint->second);
     std::string words;
     for (std::size_t group = 0; group < d.groups.size(); ++group)
         if (found.empty() || std::find(found.begin(), found.end(), group) != found.end())

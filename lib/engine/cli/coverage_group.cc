@@ -4,43 +4,66 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/error.h"
+
 namespace ispace {
 
 CoverageExtensions::CoverageExtensions(std::span<const CoverageRow> rows) {
-    groups_.reserve(rows.size());
-    for (const CoverageRow& row : rows) groups_.push_back(row.make());
+    members_.reserve(rows.size());
+    for (const CoverageRow& row : rows) {
+        if (row.make == nullptr)
+            missing_.push_back(row);
+        else
+            members_.push_back({std::string(row.extension), row.make()});
+    }
 }
 
 void CoverageExtensions::declare(CommandLine& line) {
     const auto before = static_cast<std::ptrdiff_t>(line.names().size());
-    for (const auto& group : groups_) group->declare(line);
+    for (const Member& member : members_) {
+        line.extension(member.extension);
+        member.group->declare(line);
+    }
+    line.extension("");
     const std::vector<std::string> names = line.names();
     options_.assign(names.begin() + before, names.end());
 }
 
 void CoverageExtensions::take(const CommandLine& line) const {
-    for (const auto& group : groups_) group->take(line);
+    for (const Member& member : members_) member.group->take(line);
 }
 
 bool CoverageExtensions::isAsked() const {
-    return std::any_of(groups_.begin(), groups_.end(),
-                       [](const auto& group) { return group->isAsked(); });
+    return std::any_of(members_.begin(), members_.end(),
+                       [](const Member& member) { return member.group->isAsked(); });
+}
+
+std::string CoverageExtensions::requirements() const {
+    std::string text;
+    for (const Member& member : members_) text += member.group->requirements();
+    return text;
 }
 
 bool CoverageExtensions::takesRequirement(const std::string& text) const {
-    return std::any_of(groups_.begin(), groups_.end(),
-                       [&text](const auto& group) { return group->takesRequirement(text); });
+    for (const CoverageRow& row : missing_)
+        if (text.starts_with(std::string(row.missing) + ':'))
+            throw UsageError("--require: `" + text + "`: it belongs to the extension " +
+                             std::string(row.extension) + ", which this build lacks");
+    return std::any_of(members_.begin(), members_.end(), [&text](const Member& member) {
+        return member.group->takesRequirement(text);
+    });
 }
 
 void CoverageExtensions::fit(const SiteInput& input) const {
-    for (const auto& group : groups_)
-        if (group->isAsked()) group->fit(input);
+    for (const Member& member : members_)
+        if (member.group->isAsked()) member.group->fit(input);
 }
 
 void CoverageExtensions::measure(const MeasuredSite& site, CoverageFindings& findings,
                                  bool searches) const {
-    for (const auto& group : groups_)
-        if (group->isAsked() && group->searches() == searches) group->measure(site, findings);
+    for (const Member& member : members_)
+        if (member.group->isAsked() && member.group->searches() == searches)
+            member.group->measure(site, findings);
 }
 
 }  // namespace ispace

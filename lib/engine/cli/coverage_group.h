@@ -49,12 +49,15 @@ struct CoverageFindings {
 class CoverageGroup {
   public:
     virtual ~CoverageGroup() = default;
-    /// Declares the options, bound to members, behind those of requirements.
+    /// Declares the options, bound to members. The group begins with line.group(HEADING).
     virtual void declare(CommandLine& line) = 0;
     /// Checks the options with each other and with those of the tool, and takes what these say
     /// (CommandLine::valuesOf). Opens no file. \throws UsageError
     virtual void take(const CommandLine& line) = 0;
     [[nodiscard]] virtual bool isAsked() const = 0;
+    /// Returns the requirements that it judges, for the help of `--require`: "; of the ways of
+    /// --presence presence:95%"; "" for none.
+    [[nodiscard]] virtual std::string_view requirements() const { return ""; }
     /// Returns true if it judges what a `--require` says, and keeps that. It is called before
     /// take(). \throws UsageError
     [[nodiscard]] virtual bool takesRequirement(const std::string& /*text*/) { return false; }
@@ -72,7 +75,8 @@ class CoverageGroup {
 /// A row of Extensions, see cli/extension.h.
 struct CoverageRow {
     std::string_view extension;
-    std::unique_ptr<CoverageGroup> (*make)();
+    std::unique_ptr<CoverageGroup> (*make)();  ///< null for requirements that this build lacks
+    std::string_view missing = {};             ///< their word ("presence")
 };
 
 /// The groups that extensions add to one command line.
@@ -84,6 +88,9 @@ class CoverageExtensions {
     /// As those of CoverageGroup, for all of them.
     void take(const CommandLine& line) const;
     [[nodiscard]] bool isAsked() const;
+    /// Returns what each group says, one after another.
+    [[nodiscard]] std::string requirements() const;
+    /// \throws UsageError for a requirement that this build lacks, with its extension
     [[nodiscard]] bool takesRequirement(const std::string& text) const;
     void fit(const SiteInput& input) const;
     /// Those that search, or the others.
@@ -92,7 +99,12 @@ class CoverageExtensions {
     [[nodiscard]] const std::vector<std::string>& options() const { return options_; }
 
   private:
-    std::vector<std::shared_ptr<CoverageGroup>> groups_;
+    struct Member {
+        std::string extension;
+        std::shared_ptr<CoverageGroup> group;
+    };
+    std::vector<Member> members_;
+    std::vector<CoverageRow> missing_;
     std::vector<std::string> options_;
 };
 

@@ -16,7 +16,7 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
             options_.push_back({each.name, row.tool, row.make});
         if (each.objective != nullptr) objectives_.push_back({each.name, each.objective});
         if (each.coverage != nullptr) coverage_.push_back({each.name, each.coverage});
-        if (each.record != nullptr) records_.push_back(each.record);
+        if (each.record != nullptr) records_.push_back({each.name, each.record});
         if (each.proof != nullptr) proofs_.push_back({each.name, each.proof});
         if (each.judge != nullptr) judges_.push_back(each.judge);
         if (each.bridge != nullptr) bridges_.push_back({each.name, each.bridge});
@@ -31,6 +31,8 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
             addMissingFormat(name, extension);
         else if (owner == "export")
             addMissingExporter(name, extension);
+        else if (owner == "requirement")
+            coverage_.push_back({extension, nullptr, name});
         else if (owner == "objective")
             objectives_.push_back({extension, nullptr, name});
         else if (owner == "proof")

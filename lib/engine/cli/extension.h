@@ -42,7 +42,7 @@ struct Extension {
     std::vector<ToolOptions> options = {};                     ///< at most one for each tool
     std::unique_ptr<ObjectiveGroup> (*objective)() = nullptr;  ///< of `arrange --objective`
     std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;    ///< of reports of `coverage`
-    MakeRecordGroup record = nullptr;                          ///< of records of `simrun`
+    std::unique_ptr<RecordGroup> (*record)() = nullptr;        ///< of records of `simrun`
     std::unique_ptr<ProofGroup> (*proof)() = nullptr;          ///< of `arrange --proof`
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;          ///< of runs of `simrun`
     std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;        ///< another protocol of a run
@@ -52,7 +52,8 @@ struct Extension {
 /// What an extension that a build lacks would bring.
 struct MissingOffer {
     std::string_view extension;
-    /// A tool (`name` is its option), or "record", "format", "export", "objective" or "proof".
+    /// A tool (`name` is its option), or "record", "format", "export", "objective", "proof"
+    /// or "requirement".
     std::string_view owner;
     std::string_view name;
 };
@@ -69,7 +70,7 @@ class Extensions {
     [[nodiscard]] const std::vector<ToolExtension>& options() const { return options_; }
     [[nodiscard]] const std::vector<ObjectiveRow>& objectives() const { return objectives_; }
     [[nodiscard]] const std::vector<CoverageRow>& coverage() const { return coverage_; }
-    [[nodiscard]] const std::vector<MakeRecordGroup>& records() const { return records_; }
+    [[nodiscard]] const std::vector<RecordRow>& records() const { return records_; }
     [[nodiscard]] const std::vector<ProofRow>& proofs() const { return proofs_; }
     [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
     [[nodiscard]] const std::vector<BridgeRow>& bridges() const { return bridges_; }
@@ -80,7 +81,7 @@ class Extensions {
     std::vector<ToolExtension> options_;
     std::vector<ObjectiveRow> objectives_;
     std::vector<CoverageRow> coverage_;
-    std::vector<MakeRecordGroup> records_;
+    std::vector<RecordRow> records_;
     std::vector<ProofRow> proofs_;
     std::vector<MakeJudge> judges_;
     std::vector<BridgeRow> bridges_;

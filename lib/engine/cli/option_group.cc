@@ -64,14 +64,16 @@ ExtensionTask ToolExtensions::task(const CommandLine& line, TaskInput input) con
     for (const Member& member : members_)
         for (const std::string& name : member.options)
             if (&member != asked && line.given(name))
-                throw UsageError(name + " goes with " + member.options.front());
+                throw UsageError(name + " goes with " + member.options.front() +
+                                 ": give that, too");
     if (asked == nullptr) return {};
     const std::span<const std::string_view> honoured = asked->group->honours();
     const std::vector<std::string> common = commonNames();
     for (const std::string& name : line.names())
         if (line.given(name) && !contains(asked->options, name) && !contains(common, name) &&
             std::find(honoured.begin(), honoured.end(), name) == honoured.end())
-            throw UsageError(name + " does not go with " + asked->options.front());
+            throw UsageError(name + " does not go with " + asked->options.front() +
+                             ": leave it out");
     asked->group->take(line);
     input.history_line = line.historyLine(input.operands);
     return [group = asked->group, input = std::move(input)] { group->run(input); };

@@ -108,8 +108,8 @@ TEST(ToolExtensions, ATaskOutlivesTheCommandLineAndReadsTheToolsOptions) {
 
 TEST(ToolExtensions, OptionsWithoutAMeaningAreRefused) {
     EXPECT_EQ(errorOf({"room.env", "--weigh", "log", "--frames", "2"}),
-              "--frames does not go with --weigh");
-    EXPECT_EQ(errorOf({"room.env", "--net"}), "--net goes with --weigh");
+              "--frames does not go with --weigh: leave it out");
+    EXPECT_EQ(errorOf({"room.env", "--net"}), "--net goes with --weigh: give that, too");
     EXPECT_EQ(errorOf({"room.env", "--weigh", "log", "--count"}),
               "--weigh and --count are two tasks: give one of them");
 }

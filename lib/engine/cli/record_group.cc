@@ -2,16 +2,21 @@
 #include "cli/record_group.h"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace ispace {
 
-RecordExtensions::RecordExtensions(std::span<const MakeRecordGroup> rows) {
+RecordExtensions::RecordExtensions(std::span<const RecordRow> rows) : rows_(rows) {
     groups_.reserve(rows.size());
-    for (const MakeRecordGroup make : rows) groups_.push_back(make());
+    for (const RecordRow& row : rows) groups_.push_back(row.make());
 }
 
 void RecordExtensions::declare(CommandLine& line) const {
-    for (const auto& group : groups_) group->declare(line);
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+        line.extension(std::string(rows_[i].extension));
+        groups_[i]->declare(line);
+    }
+    line.extension("");
 }
 
 void RecordExtensions::take(const CommandLine& line) const {

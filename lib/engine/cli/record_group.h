@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command_line.h"
@@ -26,7 +27,7 @@ struct RecordedRun {
 class RecordGroup {
   public:
     virtual ~RecordGroup() = default;
-    /// Declares the options, bound to members, behind that of reports.
+    /// Declares the options, bound to members. The group begins with line.group(HEADING).
     virtual void declare(CommandLine& line) = 0;
     /// Checks the options; opens no file. \throws UsageError, also without a record
     virtual void take(const CommandLine& line) = 0;
@@ -36,13 +37,16 @@ class RecordGroup {
 };
 
 /// A row of Extensions, see cli/extension.h.
-using MakeRecordGroup = std::unique_ptr<RecordGroup> (*)();
+struct RecordRow {
+    std::string_view extension;
+    std::unique_ptr<RecordGroup> (*make)();
+};
 
 /// The groups that extensions add to one command line.
 class RecordExtensions {
   public:
     /// \param rows in the order of `--help`
-    explicit RecordExtensions(std::span<const MakeRecordGroup> rows);
+    explicit RecordExtensions(std::span<const RecordRow> rows);
     void declare(CommandLine& line) const;
     /// As those of RecordGroup, for all of them.
     void take(const CommandLine& line) const;
@@ -50,6 +54,7 @@ class RecordExtensions {
     void conclude(const RecordedRun& run) const;
 
   private:
+    std::span<const RecordRow> rows_;
     std::vector<std::shared_ptr<RecordGroup>> groups_;
 };
 

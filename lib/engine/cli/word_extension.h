@@ -115,7 +115,7 @@ class WordExtensions {
                 if (member.group.get() != asked && name != member.group->option() &&
                     line.given(name))
                     throw UsageError(name + " goes with " + option_ + ' ' +
-                                     std::string(member.group->word()));
+                                     std::string(member.group->word()) + ": give that, too");
     }
 
   private:

@@ -22,6 +22,7 @@ constexpr int kSuggestions = 5, kMaxSuggestions = 7;  // one of each kind
 class AdviceGroup final : public CoverageGroup {
   public:
     void declare(CommandLine& line) override {
+        line.group("Suggestions");
         line.countOr(
             "--suggest", most_, kSuggestions, 1, kMaxSuggestions,
             "report up to N changes that would help: a sensor to add, turn, move, replace or "

@@ -92,6 +92,7 @@ std::string adviceText(const RecordedRun& run, std::size_t most) {
 class RunAdvice final : public RecordGroup {
   public:
     void declare(CommandLine& line) override {
+        line.group("Suggestions");
         constexpr int kSuggestions = 3;  // one of each kind
         line.countOr(
             "--suggest", most_, kSuggestions, 1, kSuggestions,

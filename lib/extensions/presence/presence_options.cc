@@ -21,6 +21,7 @@ namespace {
 class PresenceGroup final : public CoverageGroup {
   public:
     void declare(CommandLine& line) override {
+        line.group("Presence");
         line.parsed(
             "--presence", "DIR|wander:N[,TIME]",
             [this](const std::string& text) { ways_ = parseWays(text); },
@@ -28,6 +29,10 @@ class PresenceGroup final : public CoverageGroup {
             "a second: of the run that simrun --record wrote to DIR, or of N people who wander for "
             "TIME (default 10min)",
             Enters::Nothing);
+    }
+
+    [[nodiscard]] std::string_view requirements() const override {
+        return "; of the ways of --presence presence:95%, presence:PERSON=95%";
     }
 
     [[nodiscard]] bool takesRequirement(const std::string& text) override {

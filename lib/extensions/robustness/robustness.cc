@@ -85,6 +85,7 @@ std::vector<SiteCrowd> crowdsOf(const MeasuredSite& site, const CrowdChoice& cro
 class RobustnessGroup final : public CoverageGroup {
   public:
     void declare(CommandLine& line) override {
+        line.group("Mounting, failures and people");
         line.parsed(
             "--perturb", "M,DEG",
             [this](const std::string& text) { tolerance_ = parseTolerance(text); },
