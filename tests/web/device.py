@@ -50,8 +50,6 @@ with Run(environment=HOME, layout=LAYOUT) as run:
     with Page(run.url, 1200, 800) as page:
         eventually("all states", lambda: "busy on" in listed(page) and "l2 on" in listed(page))
         before = page.colors().get("#ff0000", 0)
-        for button in page.part("state-list").find_elements("tag name", "button"):
-            if button.text.strip() == "busy on":
-                button.click()
+        page.press("state-list", "busy on")
         eventually("the LED", lambda: states_of(run)["busy.on"] == "1")
         eventually("its colour on the map", lambda: page.colors().get("#ff0000", 0) > before + 10)

@@ -52,21 +52,20 @@ def shown(page):
 
 
 def press(page, name):
-    for button in page.part("state-list").find_elements("tag name", "button"):
-        if button.text.strip() == name:
-            button.click()
-            return
-    check(False, f"no button of {name}")
+    page.press("state-list", name)
 
 
 def enter(page, name, value):
-    for label in page.part("state-list").find_elements("tag name", "label"):
-        if label.text.strip() == name:
-            field = label.find_element("tag name", "input")
-            field.click()  # selects its text
-            field.send_keys(value, Keys.ENTER)
-            return
-    check(False, f"no field of {name}")
+    def is_entered():
+        for label in page.part("state-list").find_elements("tag name", "label"):
+            if label.text.strip() == name:
+                field = label.find_element("tag name", "input")
+                field.click()  # selects its text
+                field.send_keys(value, Keys.ENTER)
+                return True
+        return False
+
+    eventually(f"a field {name}", is_entered)
 
 
 def state(run, name):

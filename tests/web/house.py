@@ -67,20 +67,19 @@ def follows(run, page):
     names = buttons(page, "movers")
     check(set(names) == {"ground/h1", "ground/h2", "upper/r1"}, f"the list has {set(names)}")
     check("upper" in names["upper/r1"].text, f"r1 is {names['upper/r1'].text}")
-    names["ground/h1"].click()
+    page.select("ground/h1")
     page.click("follow")
-    rooms = Select(page.part("rooms"))
     with socket.create_connection(("127.0.0.1", run.port)) as client:  # it goes as long as somebody leads it
         client.sendall(b"PERSON ground/h1\nGOTO upper/9,3\n")
-        eventually("the storey above", lambda: rooms.first_selected_option.text == "upper")
+        eventually("the storey above", lambda: page.chosen("rooms") == "upper")
         eventually("h1 arrives", lambda: page.facts().get("x", 0) > 8.9)
     eventually("its way is told", lambda: "ground/h1 comes to s1" in page.log() and "ground/h1 comes to upper" in page.log())
     check("DELETE" not in page.log(), f"the log is {page.log()}")
     check(page.part("follow").get_attribute("aria-pressed") == "true", "it follows no more")
     check(page.text("name") == "ground/h1", f"{page.text('name')} is selected")
     # Another one in another room.
-    buttons(page, "movers")["ground/h2"].click()
-    eventually("h2's storey", lambda: rooms.first_selected_option.text == "ground" and page.facts().get("x") == 10)
+    page.select("ground/h2")
+    eventually("h2's storey", lambda: page.chosen("rooms") == "ground" and page.facts().get("x") == 10)
 
 
 def keeps_to_its_widgets(run, page):
@@ -94,9 +93,8 @@ def keeps_to_its_widgets(run, page):
     page.click("run")
     eventually("a pause", lambda: page.text("pace") == "paused")
     page.click("run")
-    rate = Select(page.part("rate"))
-    check(rate.first_selected_option.text == "10 ×", f"the rate is {rate.first_selected_option.text}")
-    rate.select_by_visible_text("50 ×")
+    check(page.chosen("rate") == "10 ×", f"the rate is {page.chosen('rate')}")
+    Select(page.part("rate")).select_by_visible_text("50 ×")
     eventually("the clock is faster", lambda: "rate=50" in ask(run, "WORLD")[0])
     eventually("the page says so", lambda: 40 < float((page.text("pace") or "0").split()[0]) < 60)
 

@@ -39,13 +39,25 @@ class Page:
         eventually(f"{name} on the screen", lambda: self.part(name).is_displayed())
         self.part(name).click()
 
+    def press(self, part, name, name_of=lambda button: button.text.strip()):
+        """The button of a list that has the name, once it is there."""
+        def is_pressed():
+            for button in self.part(part).find_elements("tag name", "button"):
+                if name_of(button) == name:
+                    button.click()
+                    return True
+            return False
+
+        eventually(f"a button {name} in {part}", is_pressed)
+
     def select(self, mover):
         """By its button in the list."""
-        for button in self.part("movers").find_elements("tag name", "button"):
-            if button.text.split()[0] == mover:
-                button.click()
-                return
-        check(False, f"no {mover} in the list")
+        self.press("movers", mover, lambda button: (button.text.split() or [""])[0])
+
+    def chosen(self, name):
+        """The text of a chooser's option, asked for at once, as it may change between two questions."""
+        return self.browser.execute_script(
+            "return document.getElementById(arguments[0]).selectedOptions[0]?.textContent", name)
 
     def facts(self):
         """The page's data of the selected mover: {"x": 2.0, …}; {} if it is in another room"""

@@ -10,6 +10,12 @@ import sys
 import tempfile
 import time
 
+try:
+    from selenium.common.exceptions import NoSuchElementException, StaleElementReferenceException
+    CHANGING = (NoSuchElementException, StaleElementReferenceException)
+except ImportError:
+    CHANGING = ()
+
 SHARE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../share")
 PATIENCE = 60  # seconds; far more than anything here takes
 
@@ -29,10 +35,14 @@ def check(is_so, what):
 
 
 def eventually(what, condition, patience=PATIENCE):
-    """The first result of the condition that counts as true."""
+    """The first result of the condition that counts as true. A page that changes while a condition reads several of its
+    parts does not meet it yet."""
     end = time.monotonic() + patience
     while time.monotonic() < end:
-        result = condition()
+        try:
+            result = condition()
+        except CHANGING:
+            result = None
         if result:
             return result
         time.sleep(0.05)
