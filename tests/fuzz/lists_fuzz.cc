@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lists: jobs of `coverage --batch`, sites of `arrange --places` and tags of doors.
+// Lists: jobs of `coverage --batch` and sites of `arrange --places`.
 #include "arrange/placement_rules.h"
 #include "cli/batch.h"
-#include "extensions/locks/lock.h"
 #include "fuzz.h"
 
 namespace {
@@ -19,13 +18,6 @@ void tryJobs(std::string_view bytes) {
     }
 }
 
-void tryTags(std::string_view text) {
-    std::string again;
-    for (const std::string& tag : parseAccess(text))
-        again.append(again.empty() ? "" : ",").append(tag);
-    fuzz::require(again == text, "other tags");
-}
-
 void tryPlaces(const std::string& text) {
     for (const Site& site : readSites(text, "places.csv", headingsAround(4)))
         fuzz::require(!site.headings.empty(), "a place without a heading");
@@ -38,11 +30,6 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         tryJobs(bytes);
     } catch (const FormatError&) {
         // It may be a list of sites.
-    }
-    try {
-        tryTags(bytes);
-    } catch (const FormatError&) {
-        // Likewise.
     }
     tryPlaces(std::string(bytes));
 }

@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scripts of `simrun --script`: commands in the order of time, for robots and people that exist,
 // and days of people.
-#include "extensions/curtains/curtain.h"
-#include "extensions/locks/lock.h"
+#include "extensions.h"
 #include "fuzz.h"
+#include "fuzz_room.h"
 #include "sim/activity.h"
 #include "sim/simulation.h"
-#include "wire_host.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    static const bool has_things = [] {
-        addSceneSchemas(curtainSchemas());
-        addCurtains();
-        addLocks();
-        return true;
-    }();
-    require(has_things, "no things that people lock and draw");
-    RoomHost host(
+    static_cast<void>(extensions());  // things that people lock and draw
+    FuzzRoom room(
         "robot id=r1 at=0,0\nhuman id=h1 at=2,2 tag=42\nzone id=z1 at=-1,1 size=1,1\n"
         "lamp id=l1 at=1,1\nswitch id=b1 at=0,2\nwall id=w from=-2,-3 to=-2,3\ninside at=-3,0\n"
         "zone id=z2 at=-3,0 size=1,1\ndoor id=d1 wall=w offset=3 locked=yes access=42\n"
         "curtain id=c1 from=1,-3 to=1,3\n");
-    World& world = host.world();
+    World& world = room.world();
     std::vector<TimedCommand> script = readScript(bytes, "run.txt", world);
     DayPlan plan = readDayPlan(bytes, "run.txt", world);
     for (const DayLine& line : plan.lines) {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/file.h"
+#include "extensions.h"
 #include "io/glb/glb_read.h"
 #include "io/importers.h"
 #include "record/text.h"
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
     if (argc < 2) return 2;
     try {
         const std::string folder = argv[1];
+        static_cast<void>(extensions());
         std::filesystem::create_directories(folder + "/glb");
         writeAll(folder + "/words.dict", dictionary());
         for (int i = 2; i < argc; ++i) compile(argv[i], folder + "/glb");

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "fuzz.h"
+#include "fuzz_room.h"
 #include "server/server_state.h"
-#include "wire_host.h"
 
 namespace ispace::fuzz {
 
@@ -52,7 +52,7 @@ class ServedRoom {
         return limits;
     }
 
-    RoomHost host_{
+    FuzzRoom room_{
         "zone id=z1 at=0,0 size=2,2\n"
         "robot id=r1 at=0,0 sonar=0.1,0,0;0,0.1,90 sonar_range=3 bumpers=-30,30;150,210\n"
         "laser id=l1 on=r1 at=0.1,0,0.3 fov=4 step=2 range=3 rate=10\n"
@@ -62,7 +62,7 @@ class ServedRoom {
         "human id=h1 at=2,2\n"
         "mat id=m1 at=1,0 size=1,1\n"
         "gate id=g1 at=1.5,0\n"};
-    Simulation simulation_{host_.world(), {}, {Clock::Kind::Step, 1}, {}};
+    Simulation simulation_{room_.world(), {}, {Clock::Kind::Step, 1}, {}};
     ServerState state_;
 };
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The fuzz targets of tests/fuzz, all with the same time; build-fuzz/corpus stores their inputs."""
+"""The fuzz targets of tests/fuzz and of extensions, all with the same time; build-fuzz/corpus stores their inputs."""
 import glob
 import os
 import re
@@ -16,7 +16,9 @@ def run(lab):
         lab.say("left out: no clang++")
         return
     script = os.path.join(labs.SOURCE, ".ci", "fuzz")
-    targets = [os.path.basename(path)[:-8] for path in glob.glob(os.path.join(labs.SOURCE, "tests/fuzz/*_fuzz.cc"))]
+    folders = ("tests/fuzz", "lib/extensions/*/fuzz")
+    targets = [os.path.basename(path)[:-8] for folder in folders
+               for path in glob.glob(os.path.join(labs.SOURCE, folder, "*_fuzz.cc"))]
     seconds = max(1, int(lab.seconds * AT_ONCE / len(targets)))
     # Building them takes extra time.
     process = subprocess.run([script, str(seconds), "-1", *sorted(targets)], env={**os.environ, "FUZZ_JOBS": str(AT_ONCE)},

@@ -3,26 +3,23 @@
 #pragma once
 
 #include <chrono>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "extensions/wire/wire_session.h"
-#include "record/text.h"
-#include "scene/placement_schemas.h"
+#include "fuzz_room.h"
 
 namespace ispace::fuzz {
 
-/// A separate world with a room of 8 m by 6 m, in which each client may hold each device.
+/// A room in which each client may hold each device.
 class RoomHost : public WireHost {
   public:
     /// \param layout records
-    explicit RoomHost(const std::string& layout)
-        : scene_(sceneOf(layout)), world_(scene_, std::chrono::milliseconds(100)) {}
+    explicit RoomHost(const std::string& layout) : room_(layout) {}
 
-    [[nodiscard]] World& world() override { return world_; }
+    [[nodiscard]] World& world() override { return room_.world(); }
     [[nodiscard]] bool isReplay() const override { return false; }
     [[nodiscard]] bool isPaused() const override { return true; }
     Change change(std::span<const std::string> /*assignments*/) override { return Change::Refused; }
@@ -31,21 +28,10 @@ class RoomHost : public WireHost {
         return true;
     }
     void release(std::string_view /*robot*/, std::int64_t /*hold*/) override {}
-    [[nodiscard]] std::chrono::nanoseconds clock() const override { return world_.time(); }
+    [[nodiscard]] std::chrono::nanoseconds clock() const override { return room_.world().time(); }
 
   private:
-    /// Each is made once.
-    static const Scene& sceneOf(const std::string& layout) {
-        static std::map<std::string, Scene> scenes;
-        if (const auto found = scenes.find(layout); found != scenes.end()) return found->second;
-        const Document document =
-            readRecordText("#env 1\nispace size=8,6\n" + layout, "room.env", sceneSchemas());
-        return scenes.emplace(layout, makeScene(document, nullptr, DeviceCatalogue()))
-            .first->second;
-    }
-
-    const Scene& scene_;
-    World world_;
+    FuzzRoom room_;
 };
 
 /// Returns the answer of a session to bytes in pieces of this size, read meanwhile.

@@ -6,10 +6,10 @@
 #include <memory>
 #include <string>
 
-#include "../support/fake_participant.h"
 #include "extensions/ros/ros_node.h"
 #include "fuzz.h"
 #include "served_room.h"
+#include "support/fake_participant.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ServedRoom room;

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tags that open a door: a list that is written as it was read.
+#include "extensions/locks/lock.h"
+#include "fuzz.h"
+
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    std::string again;
+    for (const std::string& tag : parseAccess(bytes))
+        again.append(again.empty() ? "" : ",").append(tag);
+    require(again == bytes, "other tags");
+}
