@@ -12,7 +12,7 @@ done
 [ -n "$folder" ] || skip "ISPACE_ARIACODA names no folder of AriaCoda's examples"
 
 # The table of the page: names and states.
-sed -n '/^example  *state  *remark/,/^\.EE/p' "$source_dir/share/man/ispace-wire.7" | awk 'NR > 1 && NF > 1 { print $1 }' >listed
+sed -n '/^example  *state  *remark/,/^\.EE/p' "$source_dir/lib/extensions/wire/ispace-wire.7" | awk 'NR > 1 && NF > 1 { print $1 }' >listed
 [ "$(wc -l <listed)" -eq 45 ] || fail "the page lists $(wc -l <listed) examples"
 includes="-I $source_dir/lib/client/aria -I $source_dir/lib/client"
 
@@ -33,7 +33,7 @@ for file in "$folder"/*.cpp; do
 done
 
 # Upstream's tests by the second table: those that compile, at least 30.
-sed -n '/^test  *state  *remark/,/^\.EE/p' "$source_dir/share/man/ispace-wire.7" |
+sed -n '/^test  *state  *remark/,/^\.EE/p' "$source_dir/lib/extensions/wire/ispace-wire.7" |
     awk 'NR > 1 && NF > 1 && $2 != "missing" { print $1 }' >listed_tests
 [ "$(wc -l <listed_tests)" -eq 39 ] || fail "the page lists $(wc -l <listed_tests) tests"
 if [ -d "$folder/../tests" ]; then

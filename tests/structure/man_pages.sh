@@ -111,7 +111,7 @@ sed '/ispace.-scan/d' "$page" >without_scan
 ! promised without_scan | diff -q schemas - >/dev/null || fail "self-test: a schema that is not promised passes"
 
 # Each program for real devices that docs/robots.md names has a row in ispace-wire's table of programs that were tried.
-plain <(sed -n '/^\.SH PROGRAMS THAT WERE TRIED/,/^\.EE/p' "$source_dir/share/man/ispace-wire.7") >tried
+plain <(sed -n '/^\.SH PROGRAMS THAT WERE TRIED/,/^\.EE/p' "$source_dir/lib/extensions/wire/ispace-wire.7") >tried
 sed -n '/^## Programs for real devices/,$s/^| `--[^|]*|[^|]*|\(.*\)|$/\1/p' "$source_dir/docs/robots.md" |
     sed 's/`[^`]*`//g' | grep -oE '[[:alpha:]][[:alnum:]_]*' | grep -vxE 'ROS|s|driver|a|few|lines|of' >named
 [ "$(wc -l <named)" -gt 9 ] || fail "no programs found in docs/robots.md: $(cat named)"

@@ -40,7 +40,7 @@ std::string shortName(RosType type) {
 }
 
 TEST(RosRows, AreInTheManual) {
-    const auto lines = linesOf(readAll(testing::sourcePath("share/man/ispace-ros.7")));
+    const auto lines = linesOf(readAll(testing::sourcePath("lib/extensions/ros/ispace-ros.7")));
     for (const RosRow& row : rosRows()) {
         const std::string topic = topicOf(row), type = shortName(row.type);
         const auto line = std::find_if(lines.begin(), lines.end(), [&](const Words& words) {
