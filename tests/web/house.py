@@ -100,7 +100,7 @@ def keeps_to_its_widgets(run, page):
 
 
 def keeps_its_trail(page, run):
-    """A changed scene changes what it changes, and nothing else."""
+    """A changed scene changes what it changes, and no more."""
     page.part("movers").find_elements("tag name", "button")[0].send_keys(Keys.NULL)
     focused = page.browser.execute_script(
         "document.querySelector('#movers button').focus(); return document.activeElement.textContent")

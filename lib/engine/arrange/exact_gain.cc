@@ -255,7 +255,7 @@ struct ExactGain::Data {
         addFloors(floors, layers);
         for (const std::vector<View>* const views : {&standing, &moving})
             for (const View& view : *views) layers.push_back(view.layer);
-        // Floor to which one more adds nothing is one face.
+        // Floor to which one more adds no area is one face.
         const auto coarse = [this](const LayerLabel& label) {
             return label.marks == 0 || !lacksOne(label, false) ? LayerLabel() : label;
         };

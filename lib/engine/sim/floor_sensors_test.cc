@@ -129,7 +129,7 @@ TEST(FloorSensors, AJumpIsNoPassage) {
 
 TEST(FloorSensors, AMatFeelsLegs) {
     Floor floor("human id=h1 at=9,9\nmat id=m1 size=0.02,0.02\n");
-    // Between the legs is nothing, however the person turns.
+    // The space between the legs is empty, however the person turns.
     floor.person({0, 0});
     EXPECT_TRUE(floor.sensors.mat(0).on.empty());
     floor.person({0, 0}, 37);

@@ -69,7 +69,7 @@ class GuardChecker {
                                         int& tries) const;
     [[nodiscard]] std::int64_t weightOf(const Leaf& leaf, const Part& part) const;
     [[nodiscard]] bool isClear(const GuardCone& cone, const Convex& outline) const;
-    /// Cuts a part by a line of a cone; returns false if that divides nothing.
+    /// Cuts a part by a line of a cone; returns false if that leaves it whole.
     bool cut(const Part& part, Part& inside, Part& outside, const Leaf& leaf) const;
     template <typename Weight>
     std::int64_t heaviest(const Leaf& leaf, std::size_t triangle, const GuardCones& sights,

@@ -241,7 +241,7 @@ TEST(WebSocket, RefusesFramesBeforeItsAnswer) {
     EXPECT_EQ(browser.receiveResponse().result_int(), 400U);
 }
 
-/// Connections that ask for nothing give way.
+/// Connections that do not ask give way.
 TEST(WebServer, HasPlaceForNewcomersAmongIdlers) {
     const WebRunning server({Clock::Kind::Real, 1});
     std::list<Browser> idlers;
