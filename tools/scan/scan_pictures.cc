@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "raster/codec.h"
+#include "report/view/contact_sheet.h"
 #include "scan/scan_options.h"
 
 namespace ispace {

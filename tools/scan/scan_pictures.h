@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 #include "cli/outputs.h"
-#include "report/view/film.h"
+#include "drawing/film.h"
 #include "report/view/view.h"
 
 namespace ispace {

@@ -11,8 +11,8 @@
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "cli/storey_operands.h"
+#include "drawing/film.h"
 #include "extensions.h"
-#include "report/view/film.h"
 #include "simrun/simrun_record.h"
 
 namespace ispace {

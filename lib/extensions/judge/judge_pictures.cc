@@ -9,9 +9,9 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "drawing/color.h"
+#include "drawing/film.h"
 #include "drawing/plan/plan.h"
 #include "extensions/judge/judge_report.h"
-#include "report/view/film.h"
 
 namespace ispace {
 

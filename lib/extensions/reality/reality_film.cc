@@ -6,9 +6,9 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "drawing/film.h"
 #include "env/level.h"
 #include "extensions/reality/reality_report.h"
-#include "report/view/film.h"
 
 namespace ispace {
 

@@ -65,13 +65,6 @@ class RunPicture {
     Image canvas_;  // of a film: plan and ways so far
 };
 
-/// Writes the header of a film in YUV4MPEG2 (4:2:0, BT.601), which ffmpeg and mpv read; y4mFrame()
-/// writes its pictures.
-/// \param fps pictures a second, with up to three decimals
-std::string y4mHeader(int width, int height, double fps);
-/// Writes a picture of a film. \pre width and height are even
-std::string y4mFrame(const Image& image);
-
 /// Holds the poses of robots and people in a recorded run in memory.
 class RunRecord {
   public:

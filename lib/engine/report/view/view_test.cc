@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "report/view/film.h"
+#include "report/view/contact_sheet.h"
 #include "report/view/run_picture.h"
 #include "support/test_layout.h"
 #include "trace/render/render.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Films: pictures of one size in a file, or files that are written one by one.
 #pragma once
 
 #include <functional>
@@ -7,33 +8,8 @@
 #include <vector>
 
 #include "drawing/drawing.h"
-#include "report/view/view.h"
 
 namespace ispace {
-
-/// Several pictures on one page: the first as wide as the page, the others below it, in rows of
-/// equal width with their names (thesis, fig. 3.15).
-class ContactSheet {
-  public:
-    /// Computes the layout. \param shapes columns and rows of each picture shown alone; the first
-    /// keeps its size, the others their aspect ratio \pre not empty
-    explicit ContactSheet(const std::vector<PictureSize>& shapes);
-
-    /// Returns the size that a picture must have.
-    [[nodiscard]] PictureSize sizeOf(std::size_t picture) const { return places_[picture].size; }
-    /// Composes the page. \pre images[i] has sizeOf(i)
-    [[nodiscard]] Image draw(const std::vector<Image>& images,
-                             const std::vector<std::string>& names) const;
-
-  private:
-    struct Place {
-        Point2 corner;
-        PictureSize size;
-    };
-    std::vector<Place> places_;
-    PictureSize page_;
-    double em_;
-};
 
 /// Encodes pictures on other cores while the next ones are drawn, and writes them in order, in the
 /// thread that adds them.
@@ -87,5 +63,12 @@ class GifFilm {
     struct Data;
     std::unique_ptr<Data> data_;
 };
+
+/// Writes the header of a film in YUV4MPEG2 (4:2:0, BT.601), which ffmpeg and mpv read; y4mFrame()
+/// writes its pictures.
+/// \param fps pictures a second, with up to three decimals
+std::string y4mHeader(int width, int height, double fps);
+/// Writes a picture of a film. \pre width and height are even
+std::string y4mFrame(const Image& image);
 
 }  // namespace ispace

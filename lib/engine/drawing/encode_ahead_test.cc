@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/film.h"
+#include "drawing/film.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
