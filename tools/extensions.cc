@@ -43,6 +43,7 @@ const Extensions& extensions() {
         ISPACE_REALITY
         ISPACE_ROBUSTNESS
         ISPACE_TRACKING
+        ISPACE_VIEWS
         ISPACE_ADVICE
         ISPACE_WIRE
         ISPACE_WEB

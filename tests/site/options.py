@@ -310,7 +310,7 @@ OPTIONS = {
         "--color": "!room.env --poses poses.tum --model ranger,fov=60,pixels=60,40 --to png --color -o pictures/",
         "--no-color": "!room.env --poses poses.tum --model ranger,fov=60,pixels=60,40 --to png --no-color -o pictures/",
         "--spectrum": "!room.env --poses poses.tum --model ranger,fov=60,pixels=60,40 --to png --color --spectrum 1,4 -o pictures/",
-        "--size": "--view bird --size 300 -o out.png",
+        "--size": "--select l1 --size 300 -o out.png",
         "--temperature": "--temperature 15 --to csv --select l*",
         "--samples": "--select c1 --samples 2 -o out.png",
         "--light": "--select c1 --light lamps -o out.png",

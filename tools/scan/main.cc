@@ -4,14 +4,12 @@
 #include <string>
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "cli/job_server.h"
 #include "cli/outputs.h"
 #include "cli/run_tool.h"
 #include "scan/scan_batch.h"
 #include "scan/scan_options.h"
 #include "scan/scan_run.h"
-#include "scan/scan_views.h"
 #include "tools.h"
 
 namespace {
@@ -56,9 +54,7 @@ void scan(const ScanCommand& command) {
     if (options.list_models) return writeAll(options.common.output, deviceTable(shippedDevices()));
     if (options.batch.merge) return mergeReadings(command);
     limitThreads(options.common.threads);
-    if (!options.view.views.empty()) keepFreedMemory();  // of one storey for the next
-    if (!options.view.views.empty()) return takeViews(command);
-    if (!options.view.run.empty()) return writeRecorded(command);
+    if (!options.run.empty()) return writeRecorded(command);
     takeReadings(command, options);
 }
 

@@ -19,6 +19,7 @@
 #include "base/number.h"
 #include "base/zstd_text.h"
 #include "cli/outputs.h"
+#include "cli/recorded_operands.h"
 #include "io/import_records.h"
 #include "scene/run/run_reader.h"
 #include "sense/formats/reading_format.h"
@@ -350,23 +351,13 @@ class RecordedReadings {
 
 }  // namespace
 
-SiteInput siteOf(const ScanToolOptions& options) {
-    std::vector<std::string> operands = options.operands;
-    if (operands.empty() && !options.view.run.empty()) {
-        mustHoldRecord("--run", options.view.run);
-        const std::string building = recordedBuilding(options.view.run);
-        operands.push_back(building.empty() ? fileOfRecord(options.view.run, "scene.env")
-                                            : building);
-    }
-    return readSite({operands, options.rules, false, {}});
-}
-
 void writeRecorded(const ScanCommand& command) {
     const ScanToolOptions& options = command.options();
-    checkRecordFolder(options.view.run);
-    const SiteInput input = siteOf(options);
+    checkRecordFolder(options.run);
+    const SiteInput input = readSite(
+        {operandsOrRecorded(options.operands, "--run", options.run), options.rules, false, {}});
     warnOfImport(options.common, "scan", input);
-    const RecordedSite record(options.view.run, input);
+    const RecordedSite record(options.run, input);
     record.checkStart();
     SiteSensors lasers = recordedLasers(options, input);
     shareFrame(options, SeenSite(input), lasers.rooms);

@@ -47,28 +47,22 @@ ScanCommand::ScanCommand(int argc, const char* const* argv)
     ToolExtensions tool_extensions(extensions().options(), "scan");
     declare(tool_extensions);
     line_.essential({"--version", "--to", "--select", "--frames", "--noise", "--poses", "--model",
-                     "--coordinates", "--size", "--samples", "--view", "--run", "--list-models",
-                     "--storey", "--output", "--quiet", "--threads", "--seed"});
+                     "--coordinates", "--size", "--samples", "--run", "--list-models", "--storey",
+                     "--output", "--quiet", "--threads", "--seed"});
     line_.parse(argc, argv);
     ScanToolOptions& o = options_;
     o.task = tool_extensions.task(line_, {o.common, o.rules, o.operands});
     if (o.task) return;
-    constexpr const char* kSingle[] = {"--view", "--run", "--list-models"};
+    constexpr const char* kSingle[] = {"--run", "--list-models"};
     checkBatchOptions(line_, o.batch, o.common, o.operands, kSingle);
     if (!o.batch.list.empty() && o.poses == "-")
         throw UsageError("--poses: stdin is not read again for each line of LIST: give a file");
-    checkViewOptions(line_, o.view);
     // The suffix of a part does not name the format of its readings.
     const bool is_part =
         o.batch.shard && o.batch.list.empty() && suffixOf(o.common.output) == "part";
     const std::string output = is_part ? "-" : o.common.output;
-    if (o.view.views.empty()) {
-        o.format = outputFormat(to_, output, readingFormats(),
-                                {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}});
-    } else {
-        o.format = outputFormat(to_, o.common.output, {"png", "jpeg"}, {{"jpg", "jpeg"}});
-    }
-    if (!o.view.views.empty() && !line_.given("--samples")) o.photo.samples = ViewOptions().samples;
+    o.format = outputFormat(to_, output, readingFormats(),
+                            {{"log", "carmen"}, {"jpg", "jpeg"}, {"rgb", "rgb24"}});
     o.noise = noise_.value_or(false);
     o.color = color_.value_or(true);
     o.encoding = encoding_ == "ascii" ? Encoding::Ascii : Encoding::Binary;
@@ -116,6 +110,8 @@ void ScanCommand::declare(ToolExtensions& tool_extensions) {
     line_.flag("--motion", o.motion,
                "drive along the poses at the sensor's rate, each beam from the pose at its time",
                Enters::History);
+    line_.file("--run", "DIR", o.run,
+               "a record of `simrun --record`: its scans, in the format of --to", Enters::BaseName);
     line_.choice("--coordinates", coordinates_, {"world", "sensor"},
                  "frame of the points in csv, pcd and ply (default world)", Enters::History);
     line_.choice("--encoding", encoding_, {"binary", "ascii"},
@@ -139,10 +135,8 @@ void ScanCommand::declare(ToolExtensions& tool_extensions) {
         "them round (default: the limits of the sensor, near is red)",
         Enters::History);
     line_.parsed(
-        "--size", "W[,H]", [&o](const std::string& text) { o.picture_size = pictureSize(text); },
-        "pixels of a view (default 1280,960, of a camera its own; H follows from W), or of each "
-        "side of an obstacle map "
-        "(default 800)",
+        "--size", "W[,H]", [this](const std::string& text) { size_ = pictureSize(text); },
+        "pixels of a picture; W alone: of each side of an obstacle map (default 800)",
         Enters::History);
     constexpr double kColdest = -100, kHottest = 100;
     line_.parsed(
@@ -150,8 +144,6 @@ void ScanCommand::declare(ToolExtensions& tool_extensions) {
         [&o](const std::string& text) { o.celsius = numberWithin(text, kColdest, kHottest); },
         "air temperature for ultrasound, Celsius (default 20)", Enters::History);
     declarePictures();
-    line_.group("Views instead of readings");
-    addViewOptions(line_, o.view);
     tool_extensions.declare(line_);
     line_.group("Jobs");
     addBatchOptions(line_, o.batch, "of its readings");
@@ -168,12 +160,10 @@ void ScanCommand::declarePictures() {
     PhotoOptions& photo = options_.photo;
     constexpr int kMaxSamples = 4096;
     line_.count("--samples", "N", photo.samples, 1, kMaxSamples,
-                "pictures: lines of sight for each pixel; more are smoother; views have 16 "
-                "by default",
-                Enters::History);
+                "pictures: lines of sight for each pixel; more are smoother", Enters::History);
     line_.choice("--light", light_, {"auto", "lamps", "sky"},
-                 "pictures and views: lamps under the ceiling, or sun and sky (default auto: "
-                 "lamps where there is a ceiling, and for views from outside)",
+                 "pictures: lamps under the ceiling, or sun and sky (default auto: "
+                 "lamps where there is a ceiling)",
                  Enters::History);
     constexpr double kMaxStops = 20;
     line_.parsed(
@@ -181,7 +171,7 @@ void ScanCommand::declarePictures() {
         [&photo](const std::string& text) {
             photo.exposure = std::exp2(numberWithin(text, -kMaxStops, kMaxStops));
         },
-        "pictures and views: stops brighter, negative darker (default 0: a white wall in full "
+        "pictures: stops brighter, negative darker (default 0: a white wall in full "
         "light is white)",
         Enters::History);
     line_.switchFlag("--sensor-bodies", "--no-sensor-bodies", sensor_bodies_,
@@ -204,16 +194,15 @@ void ScanCommand::declarePictures() {
 void ScanCommand::check() {
     ScanToolOptions& o = options_;
     checkBatch();
-    if (!o.view.views.empty()) return checkViews();
-    if (!o.view.run.empty())
+    if (!o.run.empty())
         for (const char* name : {"--frames", "--poses", "--model", "--motion", "--noise"})
             if (line_.given(name))
                 throw UsageError(std::string(name) +
                                  " does not go with --run, whose readings are taken already");
-    if (o.picture_size) {
+    if (size_) {
         constexpr int kMinPixels = 200, kMaxPixels = 8000;
-        o.map_pixels = o.picture_size->columns;
-        if (o.picture_size->rows != 0 || o.map_pixels < kMinPixels || o.map_pixels > kMaxPixels)
+        o.map_pixels = size_->columns;
+        if (size_->rows != 0 || o.map_pixels < kMinPixels || o.map_pixels > kMaxPixels)
             throw UsageError("--size: an obstacle map is a square of " +
                              std::to_string(kMinPixels) + " to " + std::to_string(kMaxPixels) +
                              " pixels a side");
@@ -243,11 +232,9 @@ void ScanCommand::checkBatch() const {
     const ScanToolOptions& o = options_;
     const std::string option = o.batch.shard ? "--shard" : o.batch.resume ? "--resume" : "--merge";
     if (!o.batch.shard && !o.batch.resume && !o.batch.merge) return;
-    if (!o.view.views.empty() || !o.view.run.empty() || o.list_models)
+    if (!o.run.empty() || o.list_models)
         throw UsageError(option + " is for readings that are taken: leave out " +
-                         (!o.view.views.empty() ? "--view"
-                          : !o.view.run.empty() ? "--run"
-                                                : "--list-models"));
+                         (!o.run.empty() ? "--run" : "--list-models"));
     if (o.batch.merge && OutputSet::of(o.common.output))
         throw UsageError(
             "--merge: files of one reading each need no merging, their shards write "
@@ -270,18 +257,6 @@ void ScanCommand::checkSensors(const std::vector<Sensor>& read) const {
         throw UsageError("--color is for depth pictures of rangers, and none is written");
     if (options_.spectrum && !(has_depths && options_.color))
         throw UsageError("--spectrum is for depth pictures in colours, and none is written");
-}
-
-void ScanCommand::checkViews() const {
-    const ScanToolOptions& o = options_;
-    for (const char* name :
-         {"--select", "--poses", "--model", "--motion", "--noise", "--sensor-bodies", "--layers"})
-        if (line_.given(name))
-            throw UsageError(std::string(name) + " is about readings, and --view takes none");
-    if (o.format != "png" && o.format != "jpeg")
-        throw UsageError("--view draws png or jpeg, and --to says " + o.format);
-    if (o.frames && o.view.run.empty())
-        throw UsageError("--frames with --view are those of a run: give --run DIR");
 }
 
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "cli/option_group.h"
-#include "scan/scan_views.h"
+#include "cli/picture_size.h"
 #include "sense/formats/mcap_writer.h"
 #include "sense/formats/point_cloud.h"
 #include "sense/formats/reading_picture.h"
@@ -35,8 +35,7 @@ struct ScanToolOptions {
     std::optional<DepthSpectrum> spectrum;
     int map_pixels = 800;
     McapCompression compression = McapCompression::None;
-    std::optional<PictureSize> picture_size;
-    ViewToolOptions view;
+    std::string run;  ///< folder of a record, whose scans are written; "": none
     double celsius = 20;
     PhotoOptions photo;
     BatchOptions batch;
@@ -57,10 +56,10 @@ class ScanCommand : public ToolCommand<ScanToolOptions> {
     void declare(ToolExtensions& extensions);
     void declarePictures();
     void check();
-    void checkViews() const;
     void checkBatch() const;
 
     std::optional<bool> noise_, color_, sensor_bodies_;
+    std::optional<PictureSize> size_;
     std::string to_, encoding_, coordinates_, light_, compression_, las_version_;
 };
 

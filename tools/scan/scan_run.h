@@ -49,11 +49,7 @@ void shareFrame(const ScanToolOptions& options, const SeenSite& site,
 /// the format cannot hold
 std::int64_t takeReadings(const ScanCommand& command, const ScanToolOptions& options);
 
-/// Reads ENV and LAYOUT; without them, the site that the record of --run holds. \throws as
-/// readSite()
-SiteInput siteOf(const ScanToolOptions& options);
-
-/// Writes the scans that `simrun --record` has recorded (--run without --view) in another format.
+/// Writes the scans that `simrun --record` has recorded (--run) in another format.
 /// \throws as the scene's readers, UsageError if the format cannot hold scans in one file
 void writeRecorded(const ScanCommand& command);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/sensor_overlay.h"
+#include "extensions/views/sensor_overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::views {
 namespace {
 
 using testing::scene;
@@ -78,4 +78,4 @@ TEST(FloorColors, AreThoseOfTheSensorsThatSeeAPlace) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::views

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/view.h"
+#include "extensions/views/view.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -8,12 +8,12 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "report/view/contact_sheet.h"
-#include "report/view/run_picture.h"
+#include "extensions/views/contact_sheet.h"
+#include "extensions/views/run_record.h"
 #include "support/test_layout.h"
 #include "trace/render/render.h"
 
-namespace ispace {
+namespace ispace::views {
 namespace {
 
 using testing::scene;
@@ -288,4 +288,4 @@ TEST(RunRecord, PassesOverWhoJoinedLater) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::views

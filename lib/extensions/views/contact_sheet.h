@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "drawing/drawing.h"
+#include "extensions/views/projector.h"
 #include "geom/point.h"
-#include "report/view/projector.h"
 
-namespace ispace {
+namespace ispace::views {
 
 /// Several pictures on one page: the first as wide as the page, the others below it, in rows of
 /// equal width with their names (thesis, fig. 3.15).
@@ -34,4 +34,4 @@ class ContactSheet {
     double em_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::views

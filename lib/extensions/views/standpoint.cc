@@ -6,10 +6,10 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "env/mesh.h"
-#include "report/view/projector.h"
+#include "extensions/views/projector.h"
 #include "trace/render/render.h"
 
-namespace ispace {
+namespace ispace::views {
 
 namespace {
 
@@ -272,4 +272,4 @@ Standpoint standpointOf(const ViewSpec& spec, const Scene& scene, PictureSize si
             .place = place};
 }
 
-}  // namespace ispace
+}  // namespace ispace::views

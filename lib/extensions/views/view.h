@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "drawing/drawing.h"
-#include "report/view/projector.h"
+#include "extensions/views/projector.h"
 #include "scene/scene.h"
 #include "trace/render/render.h"
 
-namespace ispace {
+namespace ispace::views {
 
 /// The overlay that shows sensors' views.
 enum class OverlayLayers {
@@ -76,4 +76,4 @@ std::string standpointWarning(const ViewSpec& spec, const Scene& scene);
 /// Moves a robot of the scene, and the sensors mounted on it. \pre it has that robot
 void moveRobot(Scene& scene, std::size_t robot, const Pose2& pose);
 
-}  // namespace ispace
+}  // namespace ispace::views

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scan/scan_views.h"
+#include "extensions/views/scan_views.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,18 +12,21 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "cli/command_line.h"
 #include "cli/outputs.h"
+#include "cli/picture_size.h"
 #include "cli/progress_bar.h"
-#include "report/view/run_picture.h"
-#include "scan/scan_options.h"
-#include "scan/scan_pictures.h"
-#include "scan/scan_run.h"
+#include "cli/recorded_operands.h"
+#include "cli/site_operands.h"
+#include "extensions/views/picture_files.h"
+#include "extensions/views/run_record.h"
+#include "extensions/views/view.h"
 #include "trace/render/render.h"
 
-namespace ispace {
+namespace ispace::views {
 
 namespace {
 
@@ -35,8 +40,7 @@ void nameApart(std::vector<ViewSpec>& views) {
     }
 }
 
-}  // namespace
-
+/// Returns the positions of the viewers in a room, the red points of a plan.
 std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& scene) {
     std::vector<Point3> viewers;
     for (const ViewSpec& view : views) {
@@ -48,31 +52,7 @@ std::vector<Point3> viewersOf(const std::vector<ViewSpec>& views, const Scene& s
     return viewers;
 }
 
-void addViewOptions(CommandLine& line, ViewToolOptions& options) {
-    std::string forms;
-    for (const std::string& form : viewForms()) forms += (forms.empty() ? "" : ", ") + form;
-    line.ordered(
-        "--view", "SPEC",
-        [&options](const std::string& text) { options.views.push_back(parseView(text)); },
-        "draw a picture of the room instead of readings: " + forms);
-    line.parsed(
-        "--show", "beams|area|none",
-        [&options](const std::string& text) { options.drawing.show = shownSight(text); },
-        "views: beams of lasers and view cubes of cameras, or the floor that each sensor covers "
-        "(default none)",
-        Enters::History);
-    line.texts("--highlight", "ID", options.drawing.highlight,
-               "views: make the record with this id stand out", Enters::History);
-    line.switchFlag("--labels", "--no-labels", options.labels,
-                    "views: ids of sensors and robots, red dots for cameras (default)",
-                    "views: no ids and dots", Enters::History);
-    line.file(
-        "--run", "DIR", options.run,
-        "a record of `simrun --record`: its scans, in the format of --to; or views with robots as "
-        "they were, in --frames pictures from beginning to end (default 1, the end)",
-        Enters::BaseName);
-}
-
+/// \throws UsageError
 OverlayLayers shownSight(const std::string& text) {
     if (text == "beams") return OverlayLayers::Beams;
     if (text == "area") return OverlayLayers::Area;
@@ -80,30 +60,18 @@ OverlayLayers shownSight(const std::string& text) {
     throw UsageError("`" + text + "` is none of beams|area|none");
 }
 
-void checkViewOptions(const CommandLine& line, ViewToolOptions& options) {
-    options.drawing.labels = options.labels.value_or(true);
-    nameApart(options.views);
-    if (!options.views.empty()) return;
-    for (const char* name : {"--show", "--highlight", "--labels", "--no-labels"})
-        if (line.given(name)) throw UsageError(std::string(name) + " is for pictures: give --view");
-}
-
-PictureSize pictureSize(const std::string& text) {
-    constexpr std::int64_t kMinPixels = 16, kMaxPixels = 16384;
-    const auto side = [&](const std::string& word) {
-        const std::optional<std::int64_t> pixels = parseInteger(word);
-        if (!pixels || *pixels < kMinPixels || *pixels > kMaxPixels)
-            throw UsageError("`" + text + "`: wanted W or W,H, each from " +
-                             std::to_string(kMinPixels) + " to " + std::to_string(kMaxPixels) +
-                             " pixels");
-        return static_cast<int>(*pixels);
-    };
-    const std::size_t comma = text.find(',');
-    if (comma == std::string::npos) return {side(text), 0};
-    return {side(text.substr(0, comma)), side(text.substr(comma + 1))};
-}
-
-namespace {
+/// What a command asks for.
+struct ViewRequest {
+    CommonOptions common = {};
+    SceneRules rules = {};
+    std::vector<std::string> operands = {};
+    std::vector<ViewSpec> views = {};  ///< each with a unique name
+    ViewOptions drawing = {};
+    std::optional<PictureSize> size = {};
+    std::string run = {};  ///< folder of a record; "": no record
+    std::optional<int> frames = {};
+    std::string format = {};  ///< "": by the suffix of the output
+};
 
 /// A view in one room, or of the whole building.
 struct RoomView {
@@ -137,9 +105,9 @@ auto ofRoom(const std::string& prefix, const Read& read) {
 class SiteViews {
   public:
     /// \pre both outlive it
-    SiteViews(const ScanToolOptions& options, const SiteInput& input)
+    SiteViews(const ViewRequest& options, const SiteInput& input)
         : options_(options), input_(input), site_(input) {
-        for (const ViewSpec& view : options.view.views) add(view);
+        for (const ViewSpec& view : options.views) add(view);
         for (std::size_t i = 0; i < views_.size(); ++i) nameApart(i);
         for (const RoomView& one : views_)
             if (one.room) roomFor(*one.room, isWithinRoom(one.view));
@@ -171,18 +139,17 @@ class SiteViews {
         for (const RoomView& one : views_) {
             const Scene& scene =
                 one.room ? roomFor(*one.room, isWithinRoom(one.view)) : *input_.rooms()[0];
-            jobs.push_back(
-                {one.view.name, labelFor(one),
-                 ofRoom(one.room ? input_.prefix(*one.room) : "",
-                        [&] { return pictureSizeOf(one.view, scene, options_.picture_size); }),
-                 [&, this](PictureSize size, const auto& on_progress) {
-                     if (!one.room) return drawWhole(one.view, size, on_progress);
-                     ViewOptions own = drawingOf(*one.room);
-                     own.swings = moment.swings;
-                     own.ways = moment.ways;
-                     own.on_progress = on_progress;
-                     return viewPicture(scene, one.view, size, own);
-                 }});
+            jobs.push_back({one.view.name, labelFor(one),
+                            ofRoom(one.room ? input_.prefix(*one.room) : "",
+                                   [&] { return pictureSizeOf(one.view, scene, options_.size); }),
+                            [&, this](PictureSize size, const auto& on_progress) {
+                                if (!one.room) return drawWhole(one.view, size, on_progress);
+                                ViewOptions own = drawingOf(*one.room);
+                                own.swings = moment.swings;
+                                own.ways = moment.ways;
+                                own.on_progress = on_progress;
+                                return viewPicture(scene, one.view, size, own);
+                            }});
         }
         return jobs;
     }
@@ -255,10 +222,7 @@ class SiteViews {
 
     /// Returns the options of a room's pictures, with the viewers of the others in it.
     [[nodiscard]] ViewOptions drawingOf(std::size_t room) const {
-        ViewOptions own = options_.view.drawing;
-        own.samples = options_.photo.samples;
-        own.light = options_.photo.light;
-        own.exposure = options_.photo.exposure;
+        ViewOptions own = options_.drawing;
         const std::string prefix = input_.idOf(room, "");
         std::erase_if(own.highlight,
                       [&](const std::string& id) { return !id.starts_with(prefix); });
@@ -312,7 +276,7 @@ class SiteViews {
         image.pixels.assign(
             static_cast<std::size_t>(size.columns) * static_cast<std::size_t>(size.rows), 0xFFFFFF);
         std::vector<StoreyPicture> labels;
-        const bool has_overlay = options_.view.drawing.show != OverlayLayers::None;
+        const bool has_overlay = options_.drawing.show != OverlayLayers::None;
         for (const std::size_t i : order) {
             ViewOptions own = drawingOf(i);
             own.on_progress = [&, part = 1.0 / static_cast<double>(storeys.size())](double share) {
@@ -326,7 +290,7 @@ class SiteViews {
             image = viewPicture(labels.back().scene, labels.back().view, size, own);
         }
         if (!has_overlay) image = layered(std::move(image), labels);
-        if (!options_.view.drawing.labels) return image;
+        if (!options_.drawing.labels) return image;
         for (const StoreyPicture& of_storey : labels)
             image = withLabels(image, of_storey.scene, of_storey.view, of_storey.options);
         return image;
@@ -366,7 +330,7 @@ class SiteViews {
         return standpointOf(view, *input_.rooms().front(), size).place->z;
     }
 
-    const ScanToolOptions& options_;
+    const ViewRequest& options_;
     const SiteInput& input_;
     SeenSite site_;
     std::vector<RoomView> views_;
@@ -374,9 +338,9 @@ class SiteViews {
 };
 
 /// \throws UsageError for --highlight of an id without a known storey
-void mustHaveHighlighted(const ScanToolOptions& options, const SiteInput& input) {
+void mustHaveHighlighted(const ViewRequest& options, const SiteInput& input) {
     if (input.isOneRoom()) return;
-    for (const std::string& id : options.view.drawing.highlight) {
+    for (const std::string& id : options.drawing.highlight) {
         bool is_known = false;
         for (std::size_t i = 0; i < input.rooms().size(); ++i)
             for (const std::string& plain : input.rooms()[i]->ids)
@@ -418,28 +382,27 @@ class RecordedRoom {
 };
 
 /// Gives a storey, and what is named in it, the ids of the record of its building.
-void nameAsRecorded(ScanToolOptions& options, SiteInput& input) {
-    input.building = sceneForRecord(input, options.view.run);
+void nameAsRecorded(ViewRequest& options, SiteInput& input) {
+    input.building = sceneForRecord(input, options.run);
     if (input.storey.empty()) return;
     const std::vector<std::string>& ids = input.only().ids;
     const auto rename = [&](std::string& id) {
         const std::string whole = input.storey + '/' + id;
         if (std::find(ids.begin(), ids.end(), whole) != ids.end()) id = whole;
     };
-    for (ViewSpec& view : options.view.views) rename(view.id);
-    for (std::string& id : options.view.drawing.highlight) rename(id);
+    for (ViewSpec& view : options.views) rename(view.id);
+    for (std::string& id : options.drawing.highlight) rename(id);
 }
 
-}  // namespace
-
-void takeViews(const ScanCommand& command) {
-    ScanToolOptions options = command.options();
-    SiteInput input = siteOf(options);
-    const bool is_recorded = !options.view.run.empty();
+/// Draws the views of a command. \throws as readScene() and viewPicture()
+void drawViews(ViewRequest options) {
+    SiteInput input = readSite(
+        {operandsOrRecorded(options.operands, "--run", options.run), options.rules, false, {}});
+    const bool is_recorded = !options.run.empty();
     if (is_recorded) {
         mustBeOneRoom(input, "--run");
-        mustHoldRecord("--run", options.view.run);
-        mustBeRecordOf(input, "--run", options.view.run);
+        mustHoldRecord("--run", options.run);
+        mustBeRecordOf(input, "--run", options.run);
         nameAsRecorded(options, input);
     }
     warnOfImport(options.common, "scan", input);
@@ -447,15 +410,17 @@ void takeViews(const ScanCommand& command) {
     std::vector<std::string> files = input.files;
     std::optional<RecordedRoom> run;
     if (is_recorded) {
-        const std::string folder = recordFor(input, options.view.run);
+        const std::string folder = recordFor(input, options.run);
         run.emplace(folder, input.only(), options.rules.max_work);
         files.push_back(RecordedFiles(folder).robots);
     }
     const int frames = options.frames.value_or(1);
+    const bool is_jpeg = outputFormat(options.format, options.common.output, {"png", "jpeg"},
+                                      {{"jpg", "jpeg"}}) == "jpeg";
     auto views = std::make_unique<SiteViews>(options, input);
     warn(options.common, "scan", views->warnings());
     const std::vector<std::string> names = views->names();
-    PictureFiles pictures(options, names, frames);
+    PictureFiles pictures(options.common, is_jpeg, names, frames);
     const auto progress = makeProgress("scan", options.common.progress, options.common.quiet);
     for (int frame = 0; frame < frames; ++frame) {
         RecordedMoment moment;
@@ -479,4 +444,82 @@ void takeViews(const ScanCommand& command) {
             std::to_string(count) + (count == 1 ? " picture" : " pictures") + " written");
 }
 
-}  // namespace ispace
+class ViewGroup : public OptionGroup {
+  public:
+    void declare(CommandLine& line) override {
+        line.group("Views instead of readings");
+        std::string forms;
+        for (const std::string& form : viewForms()) forms += (forms.empty() ? "" : ", ") + form;
+        line.ordered(
+            "--view", "SPEC",
+            [this](const std::string& text) { request_.views.push_back(parseView(text)); },
+            "draw a picture of the room instead of readings: " + forms +
+                "; of --size W[,H] (default 1280,960, of a camera its own; H follows from W), with "
+                "16 "
+                "--samples by default; with "
+                "--run robots as they were, in --frames pictures from beginning to end (default 1, "
+                "the end)");
+        line.parsed(
+            "--show", "beams|area|none",
+            [this](const std::string& text) { request_.drawing.show = shownSight(text); },
+            "views: beams of lasers and view cubes of cameras, or the floor that each sensor "
+            "covers (default none)",
+            Enters::History);
+        line.texts("--highlight", "ID", request_.drawing.highlight,
+                   "views: make the record with this id stand out", Enters::History);
+        line.switchFlag("--labels", "--no-labels", labels_,
+                        "views: ids of sensors and robots, red dots for cameras (default)",
+                        "views: no ids and dots", Enters::History);
+    }
+    [[nodiscard]] bool isAsked() const override { return !request_.views.empty(); }
+    [[nodiscard]] std::span<const std::string_view> honours() const override {
+        static constexpr auto kHonoured = std::to_array<std::string_view>(
+            {"--run", "--frames", "--size", "--samples", "--light", "--exposure", "--to"});
+        return kHonoured;
+    }
+    void take(const CommandLine& line) override {
+        nameApart(request_.views);
+        ViewOptions& drawing = request_.drawing;
+        drawing.labels = labels_.value_or(true);
+        const auto of = [&line](const std::string& name) -> std::optional<std::string> {
+            const std::vector<std::string> values = line.valuesOf(name);
+            return values.empty() ? std::nullopt : std::optional(values.back());
+        };
+        // The tool has checked the values of its options.
+        if (const auto samples = of("--samples"))
+            drawing.samples = static_cast<int>(*parseInteger(*samples));
+        if (const auto stops = of("--exposure")) drawing.exposure = std::exp2(*parseDouble(*stops));
+        if (const auto light = of("--light"))
+            drawing.light = *light == "lamps" ? Illumination::Lamps
+                            : *light == "sky" ? Illumination::Sky
+                                              : Illumination::Auto;
+        if (const auto size = of("--size")) request_.size = pictureSize(*size);
+        if (const auto frames = of("--frames"))
+            request_.frames = static_cast<int>(*parseInteger(*frames));
+        request_.run = of("--run").value_or("");
+        request_.format = of("--to").value_or("");
+        if (request_.frames && request_.run.empty())
+            throw UsageError("--frames with --view are those of a run: give --run DIR");
+        if (const std::string& to = request_.format; !to.empty() && to != "png" && to != "jpeg")
+            throw UsageError("--view draws png or jpeg, and --to says " + to);
+    }
+    void run(const TaskInput& input) override {
+        ViewRequest request = request_;
+        request.common = input.common;
+        request.rules = input.rules;
+        request.operands = input.operands;
+        claimOutputs(request.common);
+        keepFreedMemory();  // of one storey for the next
+        drawViews(std::move(request));
+    }
+
+  private:
+    ViewRequest request_;
+    std::optional<bool> labels_;
+};
+
+}  // namespace
+
+std::unique_ptr<OptionGroup> makeViewOptions() { return std::make_unique<ViewGroup>(); }
+
+}  // namespace ispace::views

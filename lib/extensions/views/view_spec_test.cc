@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/projector.h"
+#include "extensions/views/projector.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::views {
 namespace {
 
 std::string errorOf(const std::string& text) {
@@ -67,4 +67,4 @@ TEST(ViewSpec, RefusesWhatItCannotMean) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::views

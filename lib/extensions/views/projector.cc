@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/projector.h"
+#include "extensions/views/projector.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "base/message.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::views {
 
 namespace {
 
@@ -276,4 +276,4 @@ std::unique_ptr<Projector> panoramaEye(const Pose3& pose, int columns, int rows)
     return std::make_unique<Panorama>(pose, columns, rows);
 }
 
-}  // namespace ispace
+}  // namespace ispace::views

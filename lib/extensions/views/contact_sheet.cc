@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/contact_sheet.h"
+#include "extensions/views/contact_sheet.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "drawing/color.h"
 
-namespace ispace {
+namespace ispace::views {
 
 ContactSheet::ContactSheet(const std::vector<PictureSize>& shapes)
     : page_(shapes.front()), em_(std::max(9.0, shapes.front().columns / 80.0)) {
@@ -46,4 +46,4 @@ Image ContactSheet::draw(const std::vector<Image>& images,
     return rasterOf(page);
 }
 
-}  // namespace ispace
+}  // namespace ispace::views

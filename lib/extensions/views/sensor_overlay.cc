@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/sensor_overlay.h"
+#include "extensions/views/sensor_overlay.h"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #include "sense/selection.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::views {
 
 namespace {
 
@@ -408,4 +408,4 @@ PaintedMesh WallTops::paint() const {
     return tops;
 }
 
-}  // namespace ispace
+}  // namespace ispace::views

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/engine/report/view: pictures of a room for people: viewpoints, and sensors' views drawn into
-// pictures. Uses coverage, trace/render and drawing.
+// Pictures of a room for people: viewpoints, and sensors' views drawn into pictures.
 #pragma once
 
 #include <memory>
@@ -8,11 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "cli/picture_size.h"
 #include "geom/point.h"
 #include "scene/scene.h"
 #include "trace/render/viewpoint.h"
 
-namespace ispace {
+namespace ispace::views {
 
 /// The view modes of the thesis (sections 3.3.4, 3.4.6 and 3.5.2), and a camera's picture.
 enum class ViewMode {
@@ -77,12 +77,6 @@ std::unique_ptr<Projector> parallelEye(const Pose3& pose, double width, int colu
 /// on the left; rows of elevation, straight up at the top. Depth is distance.
 std::unique_ptr<Projector> panoramaEye(const Pose3& pose, int columns, int rows);
 
-/// Columns and rows of a picture.
-struct PictureSize {
-    int columns = 1280, rows = 960;
-    friend bool operator==(const PictureSize&, const PictureSize&) = default;
-};
-
 /// Computes the size of a view's picture: `wanted`, with rows computed from the view if they are 0;
 /// without it a camera's resolution, or a default of the mode.
 PictureSize sizeOf(const ViewSpec& spec, const Scene& scene, std::optional<PictureSize> wanted);
@@ -108,4 +102,4 @@ Standpoint standpointOf(const ViewSpec& spec, const Scene& scene, PictureSize si
 std::size_t indexOfId(const std::string& id, const std::vector<std::string>& ids,
                       const std::string& wanted);
 
-}  // namespace ispace
+}  // namespace ispace::views

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/view.h"
+#include "extensions/views/view.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 
 #include "base/message.h"
 #include "drawing/drawing.h"
-#include "report/view/sensor_overlay.h"
+#include "extensions/views/sensor_overlay.h"
 #include "sense/burial.h"
 #include "trace/render/render.h"
 
-namespace ispace {
+namespace ispace::views {
 
 namespace {
 
@@ -452,4 +452,4 @@ void moveRobot(Scene& scene, std::size_t robot, const Pose2& pose) {
             sensor.pose = mountedPose(pose, sensor.mount->robot_from_sensor);
 }
 
-}  // namespace ispace
+}  // namespace ispace::views

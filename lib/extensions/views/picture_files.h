@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "base/error.h"
+#include "cli/common_options.h"
 #include "cli/outputs.h"
+#include "cli/picture_size.h"
 #include "drawing/film.h"
-#include "report/view/view.h"
+#include "extensions/views/view.h"
 
-namespace ispace {
-
-struct ScanToolOptions;
+namespace ispace::views {
 
 /// A picture to draw.
 struct PictureJob {
@@ -39,7 +39,8 @@ std::int64_t rowsOf(const std::vector<PictureJob>& jobs);
 class PictureFiles {
   public:
     /// \param names of all pictures of a frame \throws UsageError as outputs that cannot hold them
-    PictureFiles(const ScanToolOptions& options, const std::vector<std::string>& names, int frames);
+    PictureFiles(const CommonOptions& common, bool is_jpeg, const std::vector<std::string>& names,
+                 int frames);
     /// Draws the pictures of a frame; `progress` advances by their rows.
     void write(const std::vector<PictureJob>& jobs, int frame, Progress& progress);
     /// After the last one.
@@ -55,4 +56,4 @@ class PictureFiles {
     EncodeAhead files_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::views

@@ -8,11 +8,11 @@
 
 #include "drawing/color.h"
 #include "drawing/drawing.h"
-#include "report/view/projector.h"
+#include "extensions/views/projector.h"
 #include "scene/scene.h"
 #include "trace/render/render.h"
 
-namespace ispace {
+namespace ispace::views {
 
 /// Returns the colour of a sensor, by its index in Scene::sensors, in all drawings of it.
 Color sensorColor(std::size_t index);
@@ -78,4 +78,4 @@ class WallTops {
     const Scene& scene_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::views

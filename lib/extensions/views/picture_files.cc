@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scan/scan_pictures.h"
+#include "extensions/views/picture_files.h"
 
 #include <atomic>
 #include <cmath>
@@ -9,11 +9,10 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "extensions/views/contact_sheet.h"
 #include "raster/codec.h"
-#include "report/view/contact_sheet.h"
-#include "scan/scan_options.h"
 
-namespace ispace {
+namespace ispace::views {
 
 namespace {
 
@@ -44,14 +43,14 @@ PictureSize pictureSizeOf(const ViewSpec& view, const Scene& scene,
     return size;
 }
 
-PictureFiles::PictureFiles(const ScanToolOptions& options, const std::vector<std::string>& names,
-                           int frames)
-    : output_(options.common.output),
+PictureFiles::PictureFiles(const CommonOptions& common, bool is_jpeg,
+                           const std::vector<std::string>& names, int frames)
+    : output_(common.output),
       set_(OutputSet::of(output_)),
-      is_jpeg_(options.format == "jpeg"),
+      is_jpeg_(is_jpeg),
       files_([this](const Image& image) { return encoded(image); }, writeFile) {
     if (set_) {
-        if (options.common.dependencies.wanted)
+        if (common.dependencies.wanted)
             throw UsageError("-MD writes a rule for one product, and a set is many files");
         set_->prepare(names, frames > 1, {ending()});
     } else if (frames > 1) {
@@ -59,7 +58,7 @@ PictureFiles::PictureFiles(const ScanToolOptions& options, const std::vector<std
                          " frames make as many pictures: name a folder (-o DIR/) or a pattern "
                          "(-o '%s-%04d.png'), where %s is the view's name");
     } else {
-        refuseTerminal(output_, options.format);
+        refuseTerminal(output_, is_jpeg ? "jpeg" : "png");
     }
 }
 
@@ -106,4 +105,4 @@ std::string PictureFiles::encoded(const Image& image) const {
     return is_jpeg_ ? jpegOf(image) : pngOfShades(image.width, image.height, image.pixels);
 }
 
-}  // namespace ispace
+}  // namespace ispace::views
