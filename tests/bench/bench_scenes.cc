@@ -72,7 +72,7 @@ std::string sceneFile(const std::string& name) {
 Document readRoom(const std::string& file) {
 #ifdef ISPACE_HAS_CAD
     [[maybe_unused]] static const bool reads_plans = [] {
-        addImporters(cadImporters());
+        addImporters(cad::cadImporters());
         return true;
     }();
 #endif

@@ -112,12 +112,12 @@ Region grownGallery(std::size_t corners, std::size_t holes, unsigned seed) {
 /// Guards a floor, and prints a row. \param known 0: unknown, as the published seconds
 void measureFloor(benchmark::State& state, std::span<const Region> floor,
                   const KnownGallery& known) {
-    GalleryCover cover;
+    proofs::GalleryCover cover;
     double seconds = 0;
     for (auto _ : state) {
         GalleryDeadline progress;
         const auto start = Clock::now();
-        cover = guardGallery(floor, progress);
+        cover = proofs::guardGallery(floor, progress);
         seconds = std::chrono::duration<double>(Clock::now() - start).count();
         state.SetIterationTime(seconds);
     }
@@ -163,7 +163,7 @@ void registerGrown() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    addImporters(cadImporters());
+    addImporters(cad::cadImporters());
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     registerGrown();

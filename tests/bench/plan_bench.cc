@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     keepFreedMemory();  // as envc does
-    addImporters(cadImporters());
+    addImporters(cad::cadImporters());
     for (const std::size_t walls : {1000U, 10000U, 100000U}) {
         const bench::Building plan = bench::building(walls);
         const std::string name = "walls-" + std::to_string(walls);

@@ -49,8 +49,8 @@ const Scene& roomOf(const std::string& name) {
 }
 
 /// The default robot, with another number of beams over the same half turn.
-Scene withBeams(const Scene& scene, const LearningTask& task, int beams) {
-    Scene made = learningScene(scene, task);
+Scene withBeams(const Scene& scene, const learning::LearningTask& task, int beams) {
+    Scene made = learning::learningScene(scene, task);
     for (Sensor& sensor : made.sensors)
         if (Laser* const laser = std::get_if<Laser>(&sensor.model)) {
             laser->beams = beams;
@@ -60,7 +60,7 @@ Scene withBeams(const Scene& scene, const LearningTask& task, int beams) {
 }
 
 /// Speeds and turns as of a learner at its beginning.
-void drawActions(const BatchArrays& arrays, std::size_t rows, EpisodeRandom& random) {
+void drawActions(const learning::BatchArrays& arrays, std::size_t rows, learning::EpisodeRandom& random) {
     for (std::size_t row = 0; row < rows; ++row) {
         arrays.actions[2 * row] = static_cast<float>(random.unit());
         arrays.actions[2 * row + 1] = static_cast<float>(2 * random.unit() - 1);
@@ -70,21 +70,21 @@ void drawActions(const BatchArrays& arrays, std::size_t rows, EpisodeRandom& ran
 void runBatch(benchmark::State& state, const Case& of) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                       static_cast<std::size_t>(of.threads));
-    LearningTask task = readTask("", "task");
+    learning::LearningTask task = learning::readTask("", "task");
     task.people = {static_cast<double>(of.people), static_cast<double>(of.people)};
-    LearningSetting setting{task, {}};
+    learning::LearningSetting setting{task, {}};
     setting.rooms.push_back(
-        std::make_unique<LearningRoom>(withBeams(roomOf(of.room), task, of.beams), task));
+        std::make_unique<learning::LearningRoom>(withBeams(roomOf(of.room), task, of.beams), task));
     const auto worlds = static_cast<std::size_t>(of.worlds);
-    const VectorSegment segment("ispace-bench-" + std::to_string(getpid()), setting, worlds, "");
-    const BatchArrays& arrays = segment.arrays();
-    LearningBatch batch(std::move(setting), worlds, AutoReset::NextStep, arrays);
+    const learning::VectorSegment segment("ispace-bench-" + std::to_string(getpid()), setting, worlds, "");
+    const learning::BatchArrays& arrays = segment.arrays();
+    learning::LearningBatch batch(std::move(setting), worlds, learning::AutoReset::NextStep, arrays);
     for (std::size_t i = 0; i < worlds; ++i) {
         arrays.seeds[i] = i;
-        arrays.masks[i] = static_cast<std::uint8_t>(ResetMask::Seed);
+        arrays.masks[i] = static_cast<std::uint8_t>(learning::ResetMask::Seed);
     }
     batch.reset();
-    EpisodeRandom random(1);
+    learning::EpisodeRandom random(1);
     constexpr int kWarm = 20;
     for (int i = 0; i < kWarm; ++i) {
         drawActions(arrays, worlds, random);
@@ -103,11 +103,11 @@ void runBatch(benchmark::State& state, const Case& of) {
 
 /// The ray kernel alone: scans of 181 beams from starts of the same room.
 void runRays(benchmark::State& state, const std::string& name) {
-    const LearningTask task = readTask("", "task");
-    const LearningRoom room(learningScene(roomOf(name), task), task);
-    const RobotLaser& laser = room.laser(0);
+    const learning::LearningTask task = learning::readTask("", "task");
+    const learning::LearningRoom room(learning::learningScene(roomOf(name), task), task);
+    const learning::RobotLaser& laser = room.laser(0);
     std::vector<float> ranges(room.beams());
-    EpisodeRandom random(1);
+    learning::EpisodeRandom random(1);
     std::size_t scans = 0;
     const double before = processorSeconds();
     for (auto _ : state) {

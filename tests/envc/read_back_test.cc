@@ -137,8 +137,8 @@ std::map<std::string, int> countsOf(const std::vector<Record>& records) {
 // "A room with a lamp cannot become IFC" is an error of the format, never of the room.
 TEST(ExportFormats, EachRecordThroughEachFormatAndBack) {
     testing::addMeshesOnce();
-    addImporters(cadImporters());
-    addImporters(gazeboImporters());
+    addImporters(cad::cadImporters());
+    addImporters(gazebo::gazeboImporters());
     const testing::TestFolder folder;
     writeAll(folder.file("body.obj"),
              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");

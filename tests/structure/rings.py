@@ -4,7 +4,7 @@
 extension, and tools name extensions in tools/extensions.cc alone.
 
 An extension includes those alone that its CMakeLists.txt names in needed_extensions, and docs/architecture.md has a row
-for each, with the first sentence of that file; tools/extensions.cc lists each once.
+for each, with the first sentence of that file; tools/extensions.cc lists each once. Its names stand in ispace::NAME.
 
 Today's arrows against the rings (rings.txt) are in rings_allowed.txt, which may only shrink: a new arrow fails, and so
 does a line that no include needs any longer; --update removes such lines, and never adds one.
@@ -50,6 +50,17 @@ def undeclared(texts, recipes):
             needed = re.findall(r"needed_extensions ([\w ]+)", recipes.get(own[1], ""))
             if other and other[1] != own[1] and other[1] not in " ".join(needed).split():
                 found.append(f"{path} -> {name}: lib/extensions/{own[1]}/CMakeLists.txt does not name {other[1]}")
+    return found
+
+
+def outside_of_namespaces(texts):
+    """Returns the sources of extensions that define names in ispace itself; forward declarations of the core may."""
+    found = []
+    for path, text in texts.items():
+        own = re.match(r"lib/extensions/(\w+)/", path)
+        for room in re.findall(r"^namespace ispace [{]\n((?:.*\n)*?)^[}]", text, re.M) if own else []:
+            if not re.fullmatch(r"(?:(?:class|struct) \w+;\n|\n)*", room):
+                found.append(f"{path}: names of the extension stand in namespace ispace::{own[1]}")
     return found
 
 
@@ -101,6 +112,10 @@ def must_be_able_to_fail(rings):
     locks = {"lib/extensions/locks/lock.cc": '#include "extensions/mqtt/topics.h"\n'}
     if not undeclared(locks, {"locks": ""}) or undeclared(locks, {"locks": "list(APPEND needed_extensions mqtt)"}):
         sys.exit("rings: the check does not see undeclared extensions")
+    inside = {"lib/extensions/locks/a.h": "namespace ispace {\nclass World;\n}\n\nnamespace ispace::locks {\nint a();\n}\n"}
+    if not outside_of_namespaces({"lib/extensions/locks/a.h": "namespace ispace {\n\nint a();\n}\n"}) or \
+            outside_of_namespaces(inside):
+        sys.exit("rings: the check does not see names of extensions in ispace itself")
     recipe = {"locks": "# SPDX\n# Locks of\n# doors. More.\nispace_library(locks)"}
     page = "| folder | what it adds |\n|---|---|\n| `locks` | Locks of doors |\n\n"
     if unlisted(recipe, "  ISPACE_LOCKS\n") or not unlisted(recipe, "") or not unlisted({}, "  ISPACE_LOCKS\n"):
@@ -121,6 +136,7 @@ def main(words):
     found = arrows(texts, rings)
     recipes = {file.parent.name: file.read_text() for file in (root / "lib/extensions").glob("*/CMakeLists.txt")}
     faults = undeclared(texts, recipes) + wrong_rows(recipes, (root / "docs/architecture.md").read_text())
+    faults += outside_of_namespaces(texts)
     faults += unlisted(recipes, (root / "tools/extensions.cc").read_text())
     for fault in faults:
         print(f"rings: {fault}")

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# type_names.sh [ROOT]: no type of the library has the name of another: all stand in one namespace,
-# and two of one name in two files are one to the linker, whichever it meets first. Before it checks
+# type_names.sh [ROOT]: no type of the core, and none of an extension, has the name of another there: they stand in one
+# namespace, and two of one name in two files are one to the linker, whichever it meets first. Before it checks
 # ROOT it shows on a made-up tree that it can fail.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}

@@ -15,13 +15,13 @@
 namespace ispace::testing {
 
 /// Topics without a network: peers are played by the test.
-class FakeParticipant final : public DdsParticipant {
+class FakeParticipant final : public ros::DdsParticipant {
   public:
-    int addWriter(const DdsTopic& topic) override { return add(topic); }
-    int addReader(const DdsTopic& topic) override { return add(topic); }
+    int addWriter(const ros::DdsTopic& topic) override { return add(topic); }
+    int addReader(const ros::DdsTopic& topic) override { return add(topic); }
     void remove(int end) override { ends.erase(end); }
-    [[nodiscard]] DdsGuid guid() const override { return {1}; }
-    [[nodiscard]] DdsGuid guid(int end) const override {
+    [[nodiscard]] ros::DdsGuid guid() const override { return {1}; }
+    [[nodiscard]] ros::DdsGuid guid(int end) const override {
         return {2, static_cast<std::uint8_t>(end)};
     }
     bool changed() override { return std::exchange(is_changed, false); }
@@ -29,19 +29,19 @@ class FakeParticipant final : public DdsParticipant {
     void write(int writer, std::string_view message) override {
         ends.at(writer).sent.emplace_back(message);
     }
-    void answer(int writer, const DdsRequest& request, std::string_view message) override {
+    void answer(int writer, const ros::DdsRequest& request, std::string_view message) override {
         ends.at(writer).answers.emplace_back(request, message);
     }
-    std::vector<DdsMessage> take(int reader) override {
+    std::vector<ros::DdsMessage> take(int reader) override {
         return std::exchange(ends.at(reader).arrived, {});
     }
 
     struct Known {
-        DdsTopic topic;
+        ros::DdsTopic topic;
         bool is_read = false;
         std::vector<std::string> sent;
-        std::vector<std::pair<DdsRequest, std::string>> answers;
-        std::vector<DdsMessage> arrived;
+        std::vector<std::pair<ros::DdsRequest, std::string>> answers;
+        std::vector<ros::DdsMessage> arrived;
     };
     Known& end(const std::string& name, const std::string& type = "") {
         for (auto& [number, one] : ends)
@@ -57,7 +57,7 @@ class FakeParticipant final : public DdsParticipant {
     bool is_changed = false;
 
   private:
-    int add(const DdsTopic& topic) {
+    int add(const ros::DdsTopic& topic) {
         ends[++last_].topic = topic;
         return last_;
     }

@@ -12,7 +12,7 @@
 namespace ispace::testing {
 
 struct MemoryBroker {
-    std::vector<MqttMessage> published, incoming;
+    std::vector<mqtt::MqttMessage> published, incoming;
     std::vector<std::string> subscriptions;
     int connections = 1;
     bool is_closed = false;
@@ -20,16 +20,16 @@ struct MemoryBroker {
     /// The last payload of a topic; "" without.
     [[nodiscard]] std::string last(const std::string& topic) const {
         const auto found = std::find_if(published.rbegin(), published.rend(),
-                                        [&](const MqttMessage& m) { return m.topic == topic; });
+                                        [&](const mqtt::MqttMessage& m) { return m.topic == topic; });
         return found == published.rend() ? "" : found->payload;
     }
 };
 
 /// The broker must outlive it.
-class MemoryClient final : public MqttClient {
+class MemoryClient final : public mqtt::MqttClient {
   public:
     explicit MemoryClient(MemoryBroker& broker) : broker_(&broker) {}
-    void publish(MqttMessage message) override {
+    void publish(mqtt::MqttMessage message) override {
         const auto& topics = broker_->subscriptions;
         if (std::find(topics.begin(), topics.end(), message.topic) != topics.end())
             broker_->incoming.push_back({message.topic, message.payload, false});
@@ -39,7 +39,7 @@ class MemoryClient final : public MqttClient {
     void unsubscribe(const std::string& topic) override {
         std::erase(broker_->subscriptions, topic);
     }
-    std::vector<MqttMessage> take() override { return std::exchange(broker_->incoming, {}); }
+    std::vector<mqtt::MqttMessage> take() override { return std::exchange(broker_->incoming, {}); }
     [[nodiscard]] int connections() const override { return broker_->connections; }
     void close() override { broker_->is_closed = true; }
 

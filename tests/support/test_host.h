@@ -18,7 +18,7 @@
 namespace ispace::testing {
 
 /// A world with steps of 10 ms by default.
-class TestHost : public WireHost {
+class TestHost : public wire::WireHost {
   public:
     explicit TestHost(const std::string& layout, const std::string& room = "ispace size=8,6\n",
                       SimTime step = std::chrono::milliseconds(10))
@@ -57,7 +57,7 @@ class TestHost : public WireHost {
 
     [[nodiscard]] bool isHeld() const { return held_.has_value(); }
     /// Advances the time of a session.
-    void run(WireSession& session, double seconds) {
+    void run(wire::WireSession& session, double seconds) {
         const SimTime end = world_.time() + std::chrono::milliseconds(std::lround(seconds * 1000));
         while (world_.time() < end) {
             world_.step();

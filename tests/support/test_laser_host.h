@@ -15,7 +15,7 @@
 namespace ispace::testing {
 
 /// A world that is stepped by the test; clocks of devices show simulated time, `offset` later.
-class LaserHost : public WireHost {
+class LaserHost : public wire::WireHost {
   public:
     LaserHost(const std::string& room, const std::string& layout, SimTime step)
         : scene_(testing::scene(room, layout)), world_(scene_, step) {}
@@ -50,7 +50,7 @@ class LaserHost : public WireHost {
 };
 
 /// Returns the session's answer to these bytes, given in pieces of `piece` bytes.
-inline std::string answered(WireSession& session, std::string_view bytes,
+inline std::string answered(wire::WireSession& session, std::string_view bytes,
                             std::size_t piece = std::string_view::npos) {
     std::string out;
     for (std::size_t i = 0; i < bytes.size() && !session.closing();) {
@@ -63,7 +63,7 @@ inline std::string answered(WireSession& session, std::string_view bytes,
 }
 
 /// Returns the bytes that the session sends during so many steps.
-inline std::string stepped(LaserHost& host, WireSession& session, int steps,
+inline std::string stepped(LaserHost& host, wire::WireSession& session, int steps,
                            std::size_t unsent = 0) {
     std::string out;
     for (int i = 0; i < steps; ++i) {

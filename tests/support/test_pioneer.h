@@ -21,16 +21,16 @@ class Pioneer {
     explicit Pioneer(TestHost& host)
         : host_(&host), session_(host, "r1", [this] { return wall_; }) {}
 
-    P2osSession& session() { return session_; }
+    wire::P2osSession& session() { return session_; }
     /// Advances the wall clock.
     void wait(std::chrono::milliseconds time) { wall_ += time; }
     void send(const std::string& bytes) {
         session_.receive(bytes);
         collect();
     }
-    void command(int id) { send(p2osBytes(static_cast<std::uint8_t>(id))); }
+    void command(int id) { send(wire::p2osBytes(static_cast<std::uint8_t>(id))); }
     void command(int id, int value) {
-        P2osWriter out;
+        wire::P2osWriter out;
         out.u8(value < 0 ? 0x1b : 0x3b).u16(std::abs(value));
         send(out.packet(static_cast<std::uint8_t>(id)));
     }
@@ -58,7 +58,7 @@ class Pioneer {
         return std::string(200, '\0');
     }
     [[nodiscard]] int field(std::size_t at, std::size_t bytes) const {
-        return p2osInteger(last(0x32), at, bytes);
+        return wire::p2osInteger(last(0x32), at, bytes);
     }
     [[nodiscard]] int x() const { return field(0, 2); }
     [[nodiscard]] int y() const { return field(2, 2); }
@@ -71,7 +71,7 @@ class Pioneer {
     [[nodiscard]] int sonar(std::size_t k) const { return field(20 + 3 * k, 2); }
     [[nodiscard]] int rotspeed() const { return field(last(0x32).size() - 8, 2); }
 
-    std::vector<P2osPacket> packets;
+    std::vector<wire::P2osPacket> packets;
 
   private:
     void collect() {
@@ -81,8 +81,8 @@ class Pioneer {
 
     TestHost* host_;
     std::chrono::steady_clock::time_point wall_{};
-    P2osSession session_;
-    P2osParser parser_;
+    wire::P2osSession session_;
+    wire::P2osParser parser_;
 };
 
 }  // namespace ispace::testing

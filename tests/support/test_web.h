@@ -31,7 +31,7 @@ class WebRunning {
                         const std::string& more = "")
         : room_(clock, {}, "", more),
           server_(room_.simulation, parseEndpoint("127.0.0.1:0"), limits),
-          url_(serveWeb(server_, parseEndpoint("127.0.0.1:0"), "room.env")),
+          url_(web::serveWeb(server_, parseEndpoint("127.0.0.1:0"), "room.env")),
           thread_([this] { server_.run(); }) {}
     ~WebRunning() { stop(); }
     WebRunning(const WebRunning&) = delete;

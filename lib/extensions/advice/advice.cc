@@ -12,7 +12,7 @@
 #include "extensions/advice/site_suggestions.h"
 #include "extensions/advice/suggestion_report.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -85,4 +85,4 @@ class AdviceGroup final : public CoverageGroup {
 
 std::unique_ptr<CoverageGroup> makeAdvice() { return std::make_unique<AdviceGroup>(); }
 
-}  // namespace ispace
+}  // namespace ispace::advice

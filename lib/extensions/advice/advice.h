@@ -8,11 +8,11 @@
 #include "cli/coverage_group.h"
 #include "cli/record_group.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 /// Makes the options of `coverage`.
 std::unique_ptr<CoverageGroup> makeAdvice();
 /// Makes the option of `simrun`: changes after which sensors see more of the movers of a run.
 std::unique_ptr<RecordGroup> makeRunAdvice();
 
-}  // namespace ispace
+}  // namespace ispace::advice

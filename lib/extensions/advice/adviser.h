@@ -25,7 +25,7 @@
 #include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 /// Share of the indoor floor that a change may lose if it saves a sensor or its cost.
 constexpr double kNegligible = 0.01;
@@ -235,4 +235,4 @@ std::vector<Vec2> displacements(std::span<const double> lengths);
 /// Returns the edit that moves a record.
 Edit moveOf(const std::string& id, Vec2 by);
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -13,7 +13,7 @@
 #include "env/zone.h"
 #include "extensions/advice/adviser.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -167,4 +167,4 @@ std::optional<Suggestion> Adviser::withoutIntruder(const MeasuredState& now) {
     return best;
 }
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -17,7 +17,7 @@
 #include "extensions/advice/suggested_moves.h"
 #include "scene/findings/findings.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -251,4 +251,4 @@ std::optional<Suggestion> Adviser::removal(const MeasuredState& now) {
     return suggestion;
 }
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -12,7 +12,7 @@
 #include "coverage/camera_rules.h"
 #include "scene/sensor/ultrasound.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -250,4 +250,4 @@ FloorGain CoarseSight::whole(std::span<const Sensor> sensors) {
     return sum;
 }
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -21,7 +21,7 @@
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 /// Square metres by the rules of cameras, then of covered floor: the order of suggestions.
 struct FloorGain {
@@ -120,4 +120,4 @@ class CoarseSight {
     std::map<std::tuple<Surfaces, double, double, double>, KnownSight> known_from_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -9,7 +9,7 @@
 #include "arrange/refine.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::advice {
 namespace {
 
 constexpr const char* kRoom =
@@ -130,4 +130,4 @@ TEST(CoarseSight, CountsFloorThatOneReceiverIsShortOf) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension advice() { return {.name = "advice", .coverage = makeAdvice, .record = makeRunAdvice}; }
+Extension advice() { return {.name = "advice", .coverage = advice::makeAdvice, .record = advice::makeRunAdvice}; }
 
 }  // namespace ispace::extension

@@ -17,7 +17,7 @@
 #include "scene/run/run_reader.h"
 #include "site/site_run_coverage.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -119,4 +119,4 @@ class RunAdvice final : public RecordGroup {
 
 std::unique_ptr<RecordGroup> makeRunAdvice() { return std::make_unique<RunAdvice>(); }
 
-}  // namespace ispace
+}  // namespace ispace::advice

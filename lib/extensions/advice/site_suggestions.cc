@@ -15,7 +15,7 @@
 #include "site/site_sight.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -219,4 +219,4 @@ Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
     return advice;
 }
 
-}  // namespace ispace
+}  // namespace ispace::advice

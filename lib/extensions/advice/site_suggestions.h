@@ -12,7 +12,7 @@
 #include "site/site_rules.h"
 #include "site/site_scene.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 /// Returns the scenes with the ids of all records across the building; null for a storey that
 /// shares its scene and the openings in its floor with one below.
@@ -47,4 +47,4 @@ std::vector<Suggestion> suggestForSite(const SiteScene& building, const SiteCove
 Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
                  const SuggestOptions& options, const DeviceCatalogue& devices, Progress& progress);
 
-}  // namespace ispace
+}  // namespace ispace::advice

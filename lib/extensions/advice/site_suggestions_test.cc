@@ -8,7 +8,7 @@
 #include "site/site_coverage.h"
 #include "site/site_sight.h"
 
-namespace ispace {
+namespace ispace::advice {
 namespace {
 
 SiteScene sceneOf(const std::string& text) {
@@ -138,4 +138,4 @@ TEST(BuildingSuggestions, RegardRulesOfOneStorey) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -15,7 +15,7 @@
 #include "scene/sensor/ultrasound.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -134,4 +134,4 @@ std::optional<double> MoveTrials::gainIn(const Environment& changed) {
     return cell_ * static_cast<double>(after - before);
 }
 
-}  // namespace ispace
+}  // namespace ispace::advice

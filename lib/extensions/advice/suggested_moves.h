@@ -15,7 +15,7 @@
 #include "extensions/advice/suggestion.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 /// Computes by how much more indoor floor the sensors of a scene see in rooms that differ from its
 /// own in some pieces: views change only in the shadows of these, before and after. Counts the
@@ -58,4 +58,4 @@ class MoveTrials {
     std::vector<std::int32_t> times_, heard_;  // by cell: lasers and so on; receivers
 };
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -11,7 +11,7 @@
 #include "extensions/advice/adviser.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::advice {
 namespace {
 
 constexpr const char* kRoom =
@@ -103,4 +103,4 @@ TEST(MoveTrials, AreNotKnownForRequirements) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -22,7 +22,7 @@
 #include "scene/placement_schemas.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 namespace {
 
@@ -490,4 +490,4 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
     return gains;
 }
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -17,7 +17,7 @@
 #include "scene/devices.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 /// A change of a scene, and the floor that sensors gain or lose by it.
 struct Suggestion {
@@ -81,4 +81,4 @@ std::vector<Suggestion> suggestChanges(const Scene& scene, const Coverage& cover
                                        const SuggestOptions& options,
                                        const DeviceCatalogue& devices, Progress& progress);
 
-}  // namespace ispace
+}  // namespace ispace::advice

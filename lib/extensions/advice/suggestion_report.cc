@@ -6,7 +6,7 @@
 #include "cli/common_options.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 std::string gainText(const Suggestion& suggestion) {
     std::string text = formatFixed(suggestion.gained, 2);
@@ -98,4 +98,4 @@ PageAdditions AdviceSection::page(const PageSubject& subject) const {
     return added;
 }
 
-}  // namespace ispace
+}  // namespace ispace::advice

@@ -8,7 +8,7 @@
 #include "extensions/advice/suggestion.h"
 #include "report/report_section.h"
 
-namespace ispace {
+namespace ispace::advice {
 
 /// Suggestions for a scene, and the beginning of the command that changes it (editCommand()).
 struct Advice {
@@ -43,4 +43,4 @@ class AdviceSection final : public ReportSection {
     const Advice& advice_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::advice

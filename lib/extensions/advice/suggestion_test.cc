@@ -10,7 +10,7 @@
 
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::advice {
 namespace {
 
 struct Advised {
@@ -260,4 +260,4 @@ TEST(SuggestChanges, EndAtOnceAfterAStop) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::advice

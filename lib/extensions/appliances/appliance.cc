@@ -13,7 +13,7 @@
 #include "scene/sensor/sensor_keys.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::appliances {
 
 namespace {
 
@@ -425,4 +425,4 @@ void addAppliances() {
     });
 }
 
-}  // namespace ispace
+}  // namespace ispace::appliances

@@ -14,7 +14,7 @@
 #include "scene/scene.h"
 #include "sim/sim_time.h"
 
-namespace ispace {
+namespace ispace::appliances {
 
 /// What an appliance does. It takes power in all but Off.
 enum class ApplianceState {
@@ -101,4 +101,4 @@ std::vector<Schema> applianceSchemas();
 /// Adds what sensors, states and people need to know of the records, and their checks.
 void addAppliances();
 
-}  // namespace ispace
+}  // namespace ispace::appliances

@@ -15,7 +15,7 @@
 #include "scene/room_state.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::appliances {
 namespace {
 
 using std::chrono::milliseconds;
@@ -365,4 +365,4 @@ TEST(Meters, AreNoneWithoutAppliances) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::appliances

@@ -10,10 +10,10 @@ Extension appliances() {
     return {.name = "appliances",
             .add =
                 [] {
-                    addSceneSchemas(applianceSchemas());
-                    addAppliances();
+                    addSceneSchemas(appliances::applianceSchemas());
+                    appliances::addAppliances();
                 },
-            .role = makeMeters};
+            .role = appliances::makeMeters};
 }
 
 }  // namespace ispace::extension

@@ -17,7 +17,7 @@
 #include "extensions/appliances/appliance.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::appliances {
 
 namespace {
 
@@ -326,4 +326,4 @@ std::unique_ptr<RoleService> makeMeters(std::span<const RunRoom> rooms, std::uin
     return std::make_unique<Meters>(std::move(run));
 }
 
-}  // namespace ispace
+}  // namespace ispace::appliances

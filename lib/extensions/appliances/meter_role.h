@@ -7,7 +7,7 @@
 
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::appliances {
 
 /// Makes the service of a run that has appliances or plugs; null without any.
 ///
@@ -18,4 +18,4 @@ namespace ispace {
 /// run. A step costs O(plugs), and O(appliances) after a change of their world.
 std::unique_ptr<RoleService> makeMeters(std::span<const RunRoom> rooms, std::uint64_t seed);
 
-}  // namespace ispace
+}  // namespace ispace::appliances

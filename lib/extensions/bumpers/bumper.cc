@@ -20,7 +20,7 @@
 #include "scene/thing_kind.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::bumpers {
 
 namespace {
 
@@ -405,4 +405,4 @@ std::unique_ptr<RoleService> makeBumpers(std::span<const RunRoom> rooms, std::ui
     return std::make_unique<Bumpers>(std::move(run));
 }
 
-}  // namespace ispace
+}  // namespace ispace::bumpers

@@ -16,7 +16,7 @@
 #include "scene/scene.h"
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::bumpers {
 
 /// Returns the greatest force of a contact, newtons: a mass that meets a spring at a speed turns
 /// all its energy into the spring's, so that the force is speed * sqrt(stiffness * mass). Two
@@ -63,4 +63,4 @@ std::unique_ptr<RoleService> makeBumpers(std::span<const RunRoom> rooms, std::ui
 constexpr double kPersonMass = 70;  // kg
 constexpr double kForceHold = 0.1;  // seconds
 
-}  // namespace ispace
+}  // namespace ispace::bumpers

@@ -18,7 +18,7 @@
 #include "sim/simulation.h"
 #include "support/test_building_run.h"
 
-namespace ispace {
+namespace ispace::bumpers {
 namespace {
 
 using std::chrono::milliseconds;
@@ -239,4 +239,4 @@ TEST(BumperService, GoesToOtherStoreys) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::bumpers

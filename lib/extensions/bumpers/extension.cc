@@ -9,10 +9,10 @@ Extension bumpers() {
     return {.name = "bumpers",
             .add =
                 [] {
-                    addSceneSchemas(bumperSchemas());
-                    addBumpers();
+                    addSceneSchemas(bumpers::bumperSchemas());
+                    bumpers::addBumpers();
                 },
-            .role = makeBumpers};
+            .role = bumpers::makeBumpers};
 }
 
 }  // namespace ispace::extension

@@ -3,7 +3,7 @@
 
 #include "io/mesh_files.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -28,4 +28,4 @@ std::span<const Importer> cadImporters() {
     return kRows;
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

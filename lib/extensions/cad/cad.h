@@ -9,7 +9,7 @@
 
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 /// Returns true if the bytes begin like ASCII DXF: a section, perhaps behind comments.
 bool isDxf(std::string_view bytes);
@@ -89,4 +89,4 @@ Document readGalleryFile(std::string_view bytes, const std::string& name,
 /// The rows of these formats, for addImporters().
 std::span<const Importer> cadImporters();
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -6,7 +6,7 @@
 
 #include "geom/predicates.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -156,4 +156,4 @@ std::optional<Point2> arcCenter(const CubicCurve& curve) {
     return center;
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -12,7 +12,7 @@
 
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 inline constexpr double kFullTurn = 2 * std::numbers::pi;
 
@@ -65,4 +65,4 @@ Polygon splinePoints(const SplineCurve& spline, std::size_t most);
 /// Finds the centre if the curve approximates an arc of a circle, as drawing programs write them.
 std::optional<Point2> arcCenter(const CubicCurve& curve);
 
-}  // namespace ispace
+}  // namespace ispace::cad

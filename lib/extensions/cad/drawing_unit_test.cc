@@ -10,7 +10,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 constexpr double kInch = 1 / 0.0254;
@@ -188,4 +188,4 @@ TEST(DrawingUnit, OfSvg) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -8,7 +8,7 @@
 #include "support/test_import.h"
 #include "support/test_work.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 Polygon arcOf(Point2 center, double radius, double from, double to, int pieces = 12) {
@@ -158,4 +158,4 @@ TEST(DrawnDoors, OnWallsThatRunOn) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

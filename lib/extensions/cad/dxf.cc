@@ -22,7 +22,7 @@
 #include "io/plan/drawing_unit.h"
 #include "io/plan/line_plan.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -625,4 +625,4 @@ Document readDxf(std::string_view bytes, const std::string& name, const ImportOp
         });
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

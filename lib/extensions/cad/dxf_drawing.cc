@@ -22,7 +22,7 @@
 #include "io/plan/layer_names.h"
 #include "record/text.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -1005,4 +1005,4 @@ DxfDrawing readDrawing(std::string_view bytes, const std::string& name) {
     return DxfReader(bytes, name).read();
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

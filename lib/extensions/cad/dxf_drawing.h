@@ -15,7 +15,7 @@
 #include "io/plan/line_plan.h"
 #include "io/unread.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 /// Straight pieces and arcs; a LINE has two vertices.
 struct DxfPolyline {
@@ -110,4 +110,4 @@ void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& s
 /// end before `EOF`
 DxfDrawing readDrawing(std::string_view bytes, const std::string& name);
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -16,7 +16,7 @@
 #include "scene/bodies.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -263,4 +263,4 @@ void addDxfFormats() {
     addCoverageFormats(kCoverageFormats);
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

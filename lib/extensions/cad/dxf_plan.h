@@ -13,7 +13,7 @@
 #include "report/coverage_formats.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 /// Returns the layers of a room: walls, doors, windows, objects, inside.
 std::vector<DxfLayer> dxfRoomLayers();
@@ -42,4 +42,4 @@ std::string coverageDxf(const Scene& scene, const Coverage& coverage);
 /// Adds DXF to the formats of rooms and of coverage.
 void addDxfFormats();
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -13,7 +13,7 @@
 #include "geom/pose.h"
 #include "geom/tolerance.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -174,4 +174,4 @@ void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& s
         out.note(countText(boxed, "solid") + " of another shape became the box around it");
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

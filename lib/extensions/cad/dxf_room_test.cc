@@ -4,7 +4,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 std::string ours(const std::string& entities, int units = 6) {
@@ -94,4 +94,4 @@ TEST(DxfRoom, DepthsOfOpenings) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -8,7 +8,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 constexpr double kHalfRoot = std::numbers::sqrt2 / 2;
@@ -116,4 +116,4 @@ TEST(DxfSpline, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

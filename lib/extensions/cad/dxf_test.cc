@@ -8,7 +8,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 Document read(const std::string& dxf, const ImportOptions& options = {}) {
@@ -530,4 +530,4 @@ TEST(Dxf, SameBytesTwice) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

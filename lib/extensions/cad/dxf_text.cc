@@ -12,7 +12,7 @@
 
 #include "base/message.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::string DxfText::decoded(std::string_view name) {
     return known_.emplace(name, printable(withoutEscapes(text))).first->second;
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace ispace {
+namespace ispace::cad {
 
 /// Decodes names of layers and blocks in a DXF file to UTF-8, for messages and options. One
 /// encoding counts for a file: UTF-8 if all names are UTF-8, unless an older version (before
@@ -36,4 +36,4 @@ class DxfText {
     std::map<std::string, std::string, std::less<>> known_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -11,7 +11,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 TEST(DxfText, EscapesAndCodePages) {
@@ -81,4 +81,4 @@ TEST(DxfText, LongLinesAndControlCharacters) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

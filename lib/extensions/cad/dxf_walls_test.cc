@@ -10,7 +10,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 Document read(const std::string& dxf, const ImportOptions& options = {}) {
@@ -361,4 +361,4 @@ TEST(RealPlans, UnitsThatLieAreSaid) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

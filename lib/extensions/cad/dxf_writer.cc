@@ -13,7 +13,7 @@
 
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -202,4 +202,4 @@ std::string DxfWriter::finish() {
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

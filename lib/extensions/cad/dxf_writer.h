@@ -9,7 +9,7 @@
 #include "geom/curve.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 /// A layer of a drawing; it defines the colour of its entities.
 struct DxfLayer {
@@ -57,4 +57,4 @@ class DxfWriter {
     std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -8,8 +8,8 @@ namespace ispace::extension {
 
 Extension cad() {
     return {.name = "cad", .add = [] {
-                addImporters(cadImporters());
-                addDxfFormats();
+                addImporters(cad::cadImporters());
+                cad::addDxfFormats();
             }};
 }
 

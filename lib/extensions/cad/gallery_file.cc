@@ -14,7 +14,7 @@
 #include "geom/polygon.h"
 #include "io/import_records.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -172,4 +172,4 @@ Document readGalleryFile(std::string_view bytes, const std::string& name,
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -2,7 +2,7 @@
 #include "extensions/cad/cad.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 Document read(const std::string& text, const ImportOptions& options = {}) {
@@ -69,4 +69,4 @@ TEST(GalleryFile, Refuses) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -19,7 +19,7 @@
 #include "io/import_records.h"
 #include "io/plan/plan_rooms.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -317,4 +317,4 @@ Document readHouseExpo(std::string_view json, const std::string& name, const Imp
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

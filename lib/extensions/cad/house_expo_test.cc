@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 Document read(const std::string& json, const ImportOptions& options = {}) {
@@ -163,4 +163,4 @@ TEST(HouseExpo, RealPlans) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -9,7 +9,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 /// A long slanted line, `count` times `count` copies of which lie 3 cm apart.
@@ -69,4 +69,4 @@ TEST(LinePlan, BlocksAndCrossingsShareOneBudget) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

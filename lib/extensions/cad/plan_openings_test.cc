@@ -9,7 +9,7 @@
 #include "support/test_import.h"
 #include "support/test_work.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 using Lines = std::vector<Segment2>;
@@ -298,4 +298,4 @@ TEST(PlanOpenings, LowWallsHaveLowOpenings) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

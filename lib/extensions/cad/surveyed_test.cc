@@ -9,7 +9,7 @@
 #include "support/test_dxf.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 /// Expects that the plan's corner lies less than a metre from the origin, and one note about it.
@@ -84,4 +84,4 @@ TEST(CadImporters, ToldApartByContent) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

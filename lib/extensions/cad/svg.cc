@@ -27,7 +27,7 @@
 #include "io/unread.h"
 #include "io/xml_file.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -877,4 +877,4 @@ Document readSvg(std::string_view bytes, const std::string& name, const ImportOp
         });
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -19,7 +19,7 @@
 #include "extensions/cad/curves.h"
 #include "io/import_records.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 /// An error in an attribute; readSvg adds the position.
 struct SvgError : std::runtime_error {
@@ -268,4 +268,4 @@ std::optional<SvgBox> svgViewBox(pugi::xml_node node);
 /// \param view the viewport around it, for percentages \throws SvgError
 std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind, const SvgBox& view);
 
-}  // namespace ispace
+}  // namespace ispace::cad

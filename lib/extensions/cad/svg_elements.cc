@@ -13,7 +13,7 @@
 #include "base/number.h"
 #include "io/plan/drawing_source.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -260,4 +260,4 @@ std::vector<SvgSubpath> svgPaths(pugi::xml_node node, std::string_view kind, con
     return {path};
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -10,7 +10,7 @@
 
 #include "base/message.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -329,4 +329,4 @@ SvgSubpath svgRectangle(Point2 corner, double width, double height, double radiu
     return path;
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

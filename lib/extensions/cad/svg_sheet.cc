@@ -7,7 +7,7 @@
 #include "extensions/cad/svg.h"
 #include "io/plan/drawing_source.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 namespace {
 
@@ -469,4 +469,4 @@ std::size_t SvgSheet::apply(pugi::xml_node node, SvgProperties& properties) cons
     return (steps.work + found.size()) / kStepsPerUnit;
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -8,7 +8,7 @@
 #include "geom/predicates.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::cad {
 namespace {
 
 Document read(const std::string& svg, const ImportOptions& options = {}) {
@@ -605,4 +605,4 @@ TEST(SvgCss, Transforms) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::cad

@@ -17,7 +17,7 @@
 #include "scene/bodies.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 namespace {
 
@@ -769,4 +769,4 @@ BodyFit fitToBodies(std::span<const WatchingLaser> lasers, BodyTarget target) {
     return fit;
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -9,7 +9,7 @@
 #include "extensions/calibration/plan_fit.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// A fixed level laser and its scans in the order of time.
 struct WatchingLaser {
@@ -63,4 +63,4 @@ std::vector<SeenPerson> peopleSeen(std::span<const WatchingLaser> lasers, double
 /// person once, by a line through these points.
 std::vector<Point2> peopleAt(std::span<const SeenPerson> seen, double time);
 
-}  // namespace ispace
+}  // namespace ispace::calibration

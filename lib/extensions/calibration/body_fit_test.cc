@@ -13,7 +13,7 @@
 #include "sense/selection.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::calibration {
 namespace {
 
 Sensor laserAt(const std::string& id, double x, double y, double heading, double z = 0.3) {
@@ -182,4 +182,4 @@ TEST(BodyFit, RefusesWhatDeterminesNoPose) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::calibration

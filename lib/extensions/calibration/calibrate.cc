@@ -31,7 +31,7 @@
 #include "scene/placement_schemas.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 namespace {
 
@@ -49,7 +49,7 @@ struct CalibratedLaser {
 struct CalibratedCamera {
     Sensor sensor;
     Record record;
-    std::vector<const LogPicture*> pictures = {};
+    std::vector<const reality::LogPicture*> pictures = {};
     CameraFit fit = {};
     std::string refusal = {};  ///< why its pose stays; "" for a camera with a fit
 };
@@ -60,22 +60,22 @@ bool isSource(const std::string& source, const std::string& id) {
 }
 
 /// Returns the scans of each source.
-std::map<std::string, std::vector<LogScan*>> scansBySource(Log& log) {
-    std::map<std::string, std::vector<LogScan*>> sources;
-    for (LogScan& scan : log.scans) sources[scan.sensor].push_back(&scan);
+std::map<std::string, std::vector<reality::LogScan*>> scansBySource(reality::Log& log) {
+    std::map<std::string, std::vector<reality::LogScan*>> sources;
+    for (reality::LogScan& scan : log.scans) sources[scan.sensor].push_back(&scan);
     return sources;
 }
 
 /// Takes over the beams that the log states, and the scans. \throws FormatError
-void takeScans(const std::string& log, std::span<LogScan* const> scans, CalibratedLaser& laser) {
-    const LogScan& first = *scans.front();
+void takeScans(const std::string& log, std::span<reality::LogScan* const> scans, CalibratedLaser& laser) {
+    const reality::LogScan& first = *scans.front();
     const std::size_t beams = first.ranges.size();
     auto& model = laser.seen.sensor.as<Laser>();
     model.first = first.first;
     model.step = first.step;
     model.beams = static_cast<int>(beams);
     if (std::isfinite(first.max_range) && first.max_range > 0) model.max_range = first.max_range;
-    for (LogScan* scan : scans) {
+    for (reality::LogScan* scan : scans) {
         if (scan->poses.corrected || scan->poses.odometry)
             throw FormatError(Diagnostic{
                 displayName(log), 0, 0,
@@ -129,9 +129,9 @@ std::vector<CalibratedLaser> fixedLasers(const Source& source) {
 /// pictures and of pictures without a camera.
 template <typename Source>
 std::vector<CalibratedCamera> fixedCameras(const TaskInput& task, const Source& source,
-                                           const Log& log) {
-    std::map<std::string, std::vector<const LogPicture*>> pictures;
-    for (const LogPicture& picture : log.pictures) pictures[picture.sensor].push_back(&picture);
+                                           const reality::Log& log) {
+    std::map<std::string, std::vector<const reality::LogPicture*>> pictures;
+    for (const reality::LogPicture& picture : log.pictures) pictures[picture.sensor].push_back(&picture);
     std::vector<CalibratedCamera> cameras;
     if (pictures.empty()) return cameras;
     auto fixed = fixedSensors(source, "camera");
@@ -158,7 +158,7 @@ std::vector<CalibratedCamera> fixedCameras(const TaskInput& task, const Source& 
 /// Pairs fixed lasers with the sources of a log.
 class LaserPairs {
   public:
-    LaserPairs(const TaskInput& task, Log& log) : task_(task), log_(log) {}
+    LaserPairs(const TaskInput& task, reality::Log& log) : task_(task), log_(log) {}
 
     /// Returns those of the lasers that the log has scans of.
     std::vector<CalibratedLaser> of(std::vector<CalibratedLaser> lasers) {
@@ -191,7 +191,7 @@ class LaserPairs {
 
   private:
     [[noreturn]] void refuse(const std::vector<CalibratedLaser>& lasers,
-                             const std::map<std::string, std::vector<LogScan*>>& sources) const {
+                             const std::map<std::string, std::vector<reality::LogScan*>>& sources) const {
         std::vector<std::string> ids, names;
         for (const CalibratedLaser& laser : lasers) ids.push_back(laser.seen.sensor.id);
         for (const auto& [source, scans] : sources) names.push_back(printable(source));
@@ -204,7 +204,7 @@ class LaserPairs {
     }
 
     const TaskInput& task_;
-    Log& log_;
+    reality::Log& log_;
 };
 
 double sigmaOf(const PlanCovariance& covariance, std::size_t axis) {
@@ -408,7 +408,7 @@ std::vector<PictureMoment> momentsOf(const CalibratedCamera& camera,
     ConfinedReader reader;
     const auto& model = camera.sensor.as<Camera>();
     const auto bodies = bodiesInPictures(count, [&](std::size_t i) {
-        const LogPicture& picture = *numbered(i);
+        const reality::LogPicture& picture = *numbered(i);
         const std::string name = picture.file.empty()
                                      ? displayName(log) + ", " + camera.sensor.id + " at " +
                                            formatDouble(picture.time) + " s"
@@ -474,7 +474,7 @@ std::string historyOf(const CalibratedCamera& camera) {
 /// \param lasers at their poses, those that see legs
 /// \throws FormatError for pictures that cannot be read or are of another size
 void calibrateCameras(const TaskInput& task, std::span<const WatchingLaser> lasers,
-                      const PeopleHeight& height, const Log& log,
+                      const PeopleHeight& height, const reality::Log& log,
                       std::vector<CalibratedCamera>& cameras, Document& layout) {
     if (cameras.empty()) return;
     const std::vector<SeenPerson> people = peopleSeen(lasers, height.mean);
@@ -617,7 +617,7 @@ class Calibration final : public OptionGroup {
         const SceneInput input = readScene(request);
         warnOfImport(task.common, "envc", input);
         if (!input.layout) throw UsageError("--calibrate corrects a LAYOUT, and no operand is one");
-        Log log = readLog(log_, LogPictures::Keep);
+        reality::Log log = reality::readLog(log_, reality::LogPictures::Keep);
         std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(input.scene));
         std::vector<CalibratedCamera> cameras = fixedCameras(task, input.scene, log);
         Document layout = productOf(task, *input.layout, input.layout_operand);
@@ -661,7 +661,7 @@ class Calibration final : public OptionGroup {
         if (read.kind != DocumentKind::Layout)
             throw UsageError(byWhat() + " wants a LAYOUT, and " + displayName(task.operands[0]) +
                              " is none");
-        Log log = readLog(log_, target.isPerson() ? LogPictures::Keep : LogPictures::Skip);
+        reality::Log log = reality::readLog(log_, target.isPerson() ? reality::LogPictures::Keep : reality::LogPictures::Skip);
         std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(read));
         std::vector<CalibratedCamera> cameras = fixedCameras(task, read, log);
         std::vector<WatchingLaser> seen;
@@ -710,8 +710,8 @@ class Calibration final : public OptionGroup {
 std::unique_ptr<OptionGroup> makeCalibration() { return std::make_unique<Calibration>(); }
 
 std::span<const Importer> calibrationImporters() {
-    static constexpr Importer kRows[] = {importer<isLog, readLogRoom>("")};
+    static constexpr Importer kRows[] = {importer<reality::isLog, readLogRoom>("")};
     return kRows;
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

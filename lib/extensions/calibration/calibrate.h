@@ -7,7 +7,7 @@
 #include "cli/option_group.h"
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// `envc ENV LAYOUT --calibrate LOG`: the product is the layout with the poses of the fixed lasers
 /// that the log has scans of, or a report of them as JSON (schema ispace-calibration/1). For the
@@ -17,4 +17,4 @@ std::unique_ptr<OptionGroup> makeCalibration();
 /// Logs as rooms, see readLogRoom().
 std::span<const Importer> calibrationImporters();
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -16,7 +16,7 @@
 #include "geom/rotation.h"
 #include "scene/bodies.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 namespace {
 
@@ -423,4 +423,4 @@ CameraFit fitToPictures(const Sensor& camera, std::span<const PictureMoment> mom
     return PictureFitter(camera, moments, height).fit();
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -9,7 +9,7 @@
 #include "extensions/calibration/picture_people.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// A picture, and where lasers saw people at its time.
 struct PictureMoment {
@@ -44,4 +44,4 @@ struct CameraFit {
 CameraFit fitToPictures(const Sensor& camera, std::span<const PictureMoment> moments,
                         const PeopleHeight& height);
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -11,7 +11,7 @@
 #include "sense/photo.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::calibration {
 namespace {
 
 /// Where a person walks, and where the feet are.
@@ -120,4 +120,4 @@ TEST(CameraFit, RefusesPicturesThatTellNothing) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::calibration

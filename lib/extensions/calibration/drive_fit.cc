@@ -13,7 +13,7 @@
 #include "base/message.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 namespace {
 
@@ -292,4 +292,4 @@ std::string driveJson(const DriveFit& fit) {
     return json.endArray().endObject().take() + '\n';
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -10,7 +10,7 @@
 
 #include "geom/pose.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// A piece of a drive: the speeds of the wheels, and the motion of the laser by scan matching.
 struct DriveStep {
@@ -61,4 +61,4 @@ DriveFit fitDrive(std::span<const DriveStep> steps, const std::string& name);
 std::string driveText(const DriveFit& fit);
 std::string driveJson(const DriveFit& fit);
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/file.h"
 
-namespace ispace {
+namespace ispace::calibration {
 namespace {
 
 const DriveParameters kReal{0.0206, 0.0207, 0.0883, {{-0.0058, 0.031}, Angle::degrees(-91)}};
@@ -118,4 +118,4 @@ TEST(DriveFit, PublishedDrivesGiveThePublishedParameters) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -7,8 +7,8 @@ namespace ispace::extension {
 
 Extension calibration() {
     return {.name = "calibration",
-            .add = [] { addImporters(calibrationImporters()); },
-            .options = {{"envc", makeCalibration}}};
+            .add = [] { addImporters(calibration::calibrationImporters()); },
+            .options = {{"envc", calibration::makeCalibration}}};
 }
 
 }  // namespace ispace::extension

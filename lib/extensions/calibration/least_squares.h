@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// Computes the slopes of a functor's values at `x` by central differences.
 template <typename Functor>
@@ -41,4 +41,4 @@ inline std::vector<double> cauchyWeights(std::span<const double> squares, double
     return weights;
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -13,7 +13,7 @@
 #include "base/number.h"
 #include "extensions/reality/log.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 namespace {
 
@@ -130,10 +130,10 @@ CellMap occupancyOf(std::span<const PosedScan> scans, double resolution, const s
 
 Document readLogRoom(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas) {
-    Log log = parseLog(bytes, name);
+    reality::Log log = reality::parseLog(bytes, name);
     std::vector<PosedScan> scans;
     std::size_t tilted = 0, lost = 0;
-    for (LogScan& scan : log.scans) {
+    for (reality::LogScan& scan : log.scans) {
         const std::optional<Pose3> pose = scan.poses.best();
         if (!pose) {
             ++lost;
@@ -164,4 +164,4 @@ Document readLogRoom(std::string_view bytes, const std::string& name, const Impo
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -10,7 +10,7 @@
 #include "geom/pose.h"
 #include "io/map/cell_map.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// A level scan at a known pose. Beam k has bearing first + k * step; ranges at or beyond max_range
 /// are no returns.
@@ -40,4 +40,4 @@ CellMap occupancyOf(std::span<const PosedScan> scans, double resolution, const s
 Document readLogRoom(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas);
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -18,13 +18,13 @@
 #include "sense/scan.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::calibration {
 namespace {
 
 /// Returns the scans of a log with corrected poses.
 std::vector<PosedScan> carmenScans(const std::string& file) {
     std::vector<PosedScan> scans;
-    for (LogScan& scan : readLog(file).scans) {
+    for (reality::LogScan& scan : reality::readLog(file).scans) {
         const Pose3 pose = scan.poses.best().value();
         scans.push_back({{pose.position.onFloor(), pose.heading},
                          scan.first,
@@ -136,7 +136,7 @@ TEST(Occupancy, ALogIsReadAsARoom) {
         const std::string pose = " 0 0 " + formatFixed(i * std::numbers::pi / 4, 6);
         log += pose + (i % 2 == 0 ? pose : " 1 0 0") + " 1 host 1\n";
     }
-    ASSERT_TRUE(isLog(log));
+    ASSERT_TRUE(reality::isLog(log));
     const Document room = readLogRoom(log, "log", {}, sceneSchemas());
     EXPECT_NEAR(makeScene(room, nullptr, {}).environment.indoor().area(), 16, 1.5);
     // A fixed laser: a calibration finds its pose.
@@ -145,7 +145,7 @@ TEST(Occupancy, ALogIsReadAsARoom) {
 {"sensor":"l1","t":0,"frame":0,"pose":[0,0,0.3,0,0,0],"angle_min":0,"angle_max":1,"angle_increment":1,)"
         R"("range_min":0,"range_max":9,"ranges":[1,2]}
 )";
-    ASSERT_TRUE(isLog(still));
+    ASSERT_TRUE(reality::isLog(still));
     try {
         static_cast<void>(readLogRoom(still, "log", {}, sceneSchemas()));
         FAIL() << "a room of a laser without a pose";
@@ -183,4 +183,4 @@ TEST(Occupancy, EvenScansOfCsailPredictTheOddOnes) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::calibration

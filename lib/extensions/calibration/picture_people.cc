@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "scene/sensor/camera.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 namespace {
 
@@ -189,4 +189,4 @@ std::vector<std::vector<PictureBody>> bodiesInPictures(
     return bodies;
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -9,7 +9,7 @@
 
 #include "raster/picture.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// What differs from the picture without people, as one body: rows and columns of pixel centres.
 struct PictureBody {
@@ -38,4 +38,4 @@ std::vector<std::vector<PictureBody>> bodiesInPictures(
 
 constexpr std::size_t kBackgrounds = 31;
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -16,7 +16,7 @@
 #include "sense/scan.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 namespace {
 
@@ -598,4 +598,4 @@ PlanFit fitToPlan(const Environment& environment, const Sensor& start,
     return fit;
 }
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -11,7 +11,7 @@
 #include "env/environment.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::calibration {
 
 /// Covariance of (x, y, heading): metres and radians. An infinite variance: not observed.
 using PlanCovariance = std::array<std::array<double, 3>, 3>;
@@ -58,4 +58,4 @@ constexpr double kPlanInlier = 0.2, kPlanAgreement = 0.6;
 PlanFit fitToPlan(const Environment& environment, const Sensor& start,
                   std::span<const std::vector<float>> scans);
 
-}  // namespace ispace
+}  // namespace ispace::calibration

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::calibration {
 namespace {
 
 Laser utm(double max_range = 30) {
@@ -162,4 +162,4 @@ TEST(PlanFit, RefusesScansThatSayTooLittle) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::calibration

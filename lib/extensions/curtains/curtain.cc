@@ -8,7 +8,7 @@
 #include "record/record.h"
 #include "scene/sensor/sensor_keys.h"
 
-namespace ispace {
+namespace ispace::curtains {
 
 namespace {
 
@@ -103,4 +103,4 @@ void addCurtains() {
                              .entities = {{"drawn", "cover", "curtain"}}});
 }
 
-}  // namespace ispace
+}  // namespace ispace::curtains

@@ -11,7 +11,7 @@
 #include "record/schema.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::curtains {
 
 /// Returns the schema of `curtain`, an element of the room with the state `drawn`.
 std::vector<Schema> curtainSchemas();
@@ -28,4 +28,4 @@ ActResult actOnCurtain(const Record& record, std::string_view verb, const Record
 /// Adds the body and the kind of curtains, for the program.
 void addCurtains();
 
-}  // namespace ispace
+}  // namespace ispace::curtains

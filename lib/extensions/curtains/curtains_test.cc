@@ -18,7 +18,7 @@
 #include "sim/goal_paths.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::curtains {
 namespace {
 
 using std::chrono::milliseconds;
@@ -90,4 +90,4 @@ TEST(Curtain, LetsPeoplePass) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::curtains

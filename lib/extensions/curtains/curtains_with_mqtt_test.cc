@@ -8,14 +8,14 @@
 #include "extensions/mqtt/mqtt_topics.h"
 #include "scene/placement_schemas.h"
 
-namespace ispace {
+namespace ispace::curtains {
 namespace {
 
 TEST(Curtain, IsACoverOfHomeAssistant) {
     testing::addCurtainsOnce();
     const Schema& schema = *sceneSchemas().find("curtain");
-    const MqttEntity thing{"c", "curtain", {{"drawn", "i/c/drawn", schema.find("drawn")}}};
-    const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
+    const mqtt::MqttEntity thing{"c", "curtain", {{"drawn", "i/c/drawn", schema.find("drawn")}}};
+    const std::vector<mqtt::MqttMessage> messages = mqtt::discoveryOf(thing, "i");
     ASSERT_EQ(messages.size(), 1U);
     EXPECT_TRUE(messages[0].topic.starts_with("homeassistant/cover/")) << messages[0].topic;
     for (const char* part : {R"("device_class":"curtain")", R"("position_topic":"i/c/drawn")",
@@ -26,4 +26,4 @@ TEST(Curtain, IsACoverOfHomeAssistant) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::curtains

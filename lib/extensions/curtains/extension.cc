@@ -7,8 +7,8 @@ namespace ispace::extension {
 
 Extension curtains() {
     return {.name = "curtains", .add = [] {
-                addSceneSchemas(curtainSchemas());
-                addCurtains();
+                addSceneSchemas(curtains::curtainSchemas());
+                curtains::addCurtains();
             }};
 }
 

@@ -21,7 +21,7 @@
 #include "sense/moment.h"
 #include "sense/sighting.h"
 
-namespace ispace {
+namespace ispace::doorcounters {
 
 DoorCounter withParameters(DoorCounter base, const Record& record) {
     Diagnostics findings;
@@ -339,4 +339,4 @@ void addDoorCounters() {
     addRecordCheck("doorcounter", checkCounter);
 }
 
-}  // namespace ispace
+}  // namespace ispace::doorcounters

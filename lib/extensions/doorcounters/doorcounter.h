@@ -13,7 +13,7 @@
 #include "scene/sensor/field_of_view.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::doorcounters {
 
 /// A time-of-flight sensor that looks down on a door from above. A line across its view divides it
 /// into two zones; `in` is the direction of its heading. Its defaults are those of a small sensor
@@ -73,4 +73,4 @@ void addPassages(const DoorCount& before, DoorCount& now);
 /// Adds the kind, for the program.
 void addDoorCounters();
 
-}  // namespace ispace
+}  // namespace ispace::doorcounters

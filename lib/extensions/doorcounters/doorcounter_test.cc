@@ -21,7 +21,7 @@
 #include "sim/simulation.h"
 #include "support/test_folder.h"
 
-namespace ispace {
+namespace ispace::doorcounters {
 namespace {
 
 using std::chrono::milliseconds;
@@ -241,4 +241,4 @@ TEST(DoorCounter, FieldsHaveItsCounts) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::doorcounters

@@ -8,7 +8,7 @@ namespace ispace::testing {
 /// Adds the kind as the tools do.
 inline void addDoorCountersOnce() {
     [[maybe_unused]] static const bool done = [] {
-        addDoorCounters();
+        doorcounters::addDoorCounters();
         return true;
     }();
 }

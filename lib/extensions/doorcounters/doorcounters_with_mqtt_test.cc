@@ -7,16 +7,16 @@
 #include "extensions/doorcounters/doorcounters_test.h"
 #include "extensions/mqtt/mqtt_topics.h"
 
-namespace ispace {
+namespace ispace::doorcounters {
 namespace {
 
 TEST(DoorCounter, HasStatisticsInHomeAssistant) {
     testing::addDoorCountersOnce();
-    const MqttEntity thing{
+    const mqtt::MqttEntity thing{
         "c",
         "doorcounter",
         {{"entered", "i/c/entered"}, {"left", "i/c/left"}, {"present", "i/c/present"}}};
-    const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
+    const std::vector<mqtt::MqttMessage> messages = mqtt::discoveryOf(thing, "i");
     ASSERT_EQ(messages.size(), 3U);
     const std::vector<std::string> classes = {"total_increasing", "total_increasing",
                                               "measurement"};
@@ -27,4 +27,4 @@ TEST(DoorCounter, HasStatisticsInHomeAssistant) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::doorcounters

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension doorcounters() { return {.name = "doorcounters", .add = addDoorCounters}; }
+Extension doorcounters() { return {.name = "doorcounters", .add = doorcounters::addDoorCounters}; }
 
 }  // namespace ispace::extension

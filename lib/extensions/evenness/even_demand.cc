@@ -10,7 +10,7 @@
 #include "geom/visibility/visibility.h"
 #include "scene/sensor/field_of_view.h"
 
-namespace ispace {
+namespace ispace::evenness {
 
 double EvenRule::valueOf(int sensors) const {
     double value = 0, step = 1;
@@ -142,4 +142,4 @@ CellSet EvenDemand::servedBy(const Sensor& sensor, const std::vector<std::uint8_
     return served;
 }
 
-}  // namespace ispace
+}  // namespace ispace::evenness

@@ -16,7 +16,7 @@
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::evenness {
 
 /// The value of floor that several sensors see.
 struct EvenRule {
@@ -80,4 +80,4 @@ class EvenDemand : public Demand {
     double area_ = 0;
 };
 
-}  // namespace ispace
+}  // namespace ispace::evenness

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::evenness {
 namespace {
 
 /// Two halves, which a narrow gap joins.
@@ -185,4 +185,4 @@ TEST(EvenDemand, FindingCountsTheFloorOfAllRooms) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::evenness

@@ -6,7 +6,7 @@
 #include "base/number.h"
 #include "extensions/evenness/even_demand.h"
 
-namespace ispace {
+namespace ispace::evenness {
 
 namespace {
 
@@ -69,4 +69,4 @@ class EvenObjective : public ObjectiveGroup {
 
 std::unique_ptr<ObjectiveGroup> makeEvenObjective() { return std::make_unique<EvenObjective>(); }
 
-}  // namespace ispace
+}  // namespace ispace::evenness

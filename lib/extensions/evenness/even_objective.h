@@ -5,9 +5,9 @@
 
 #include "cli/objective_extension.h"
 
-namespace ispace {
+namespace ispace::evenness {
 
 /// Returns the objective and options of `arrange --objective even`.
 std::unique_ptr<ObjectiveGroup> makeEvenObjective();
 
-}  // namespace ispace
+}  // namespace ispace::evenness

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension evenness() { return {.name = "evenness", .objective = makeEvenObjective}; }
+Extension evenness() { return {.name = "evenness", .objective = evenness::makeEvenObjective}; }
 
 }  // namespace ispace::extension

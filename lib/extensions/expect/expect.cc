@@ -16,7 +16,7 @@
 #include "sense/detection.h"
 #include "sense/selection.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 namespace {
 
@@ -1022,4 +1022,4 @@ std::vector<RunVerdict> ExpectationJudge::verdicts() const {
     return verdicts;
 }
 
-}  // namespace ispace
+}  // namespace ispace::expect

@@ -11,7 +11,7 @@
 #include "extensions/expect/sentence.h"
 #include "extensions/expect/things.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 /// A state that was observed.
 struct ObservedState {
@@ -67,4 +67,4 @@ class ExpectationJudge {
     std::unique_ptr<Data> data_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::expect

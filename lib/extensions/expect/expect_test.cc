@@ -10,7 +10,7 @@
 #include "extensions/expect/rule_file.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::expect {
 namespace {
 
 using State = Condition::State;
@@ -525,4 +525,4 @@ TEST(ParseExpectation, TakesRandomWords) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::expect

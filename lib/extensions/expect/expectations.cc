@@ -17,7 +17,7 @@
 #include "cli/run_tool.h"
 #include "extensions/expect/rule_file.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 namespace {
 
@@ -207,4 +207,4 @@ std::string expectationsText(std::span<const JudgedExpectation> results,
     return text;
 }
 
-}  // namespace ispace
+}  // namespace ispace::expect

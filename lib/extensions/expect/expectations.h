@@ -8,7 +8,7 @@
 #include "cli/run_judge.h"
 #include "extensions/expect/expect.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 /// Makes the options --expect and --expect-report of simrun.
 std::unique_ptr<JudgeGroup> makeExpectations();
@@ -21,4 +21,4 @@ std::string expectationsJson(std::span<const JudgedExpectation> results, const s
 /// Likewise as text.
 std::string expectationsText(std::span<const JudgedExpectation> results, const std::string& record);
 
-}  // namespace ispace
+}  // namespace ispace::expect

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension expect() { return {.name = "expect", .judge = makeExpectations}; }
+Extension expect() { return {.name = "expect", .judge = expect::makeExpectations}; }
 
 }  // namespace ispace::extension

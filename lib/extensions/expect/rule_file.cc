@@ -7,7 +7,7 @@
 #include "base/message.h"
 #include "record/yaml/yaml.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 namespace {
 
@@ -116,4 +116,4 @@ std::vector<Expectation> readRules(std::string_view bytes, const std::string& na
     return rules;
 }
 
-}  // namespace ispace
+}  // namespace ispace::expect

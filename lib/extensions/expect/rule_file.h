@@ -8,7 +8,7 @@
 
 #include "extensions/expect/sentence.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 /// Reads rules: a list of sentences, or a map with such a list under `rules`. A rule is a sentence
 /// or a map with `expect`, the sentence, and, if it has one, a `name` for reports:
@@ -22,4 +22,4 @@ namespace ispace {
 /// and column
 std::vector<Expectation> readRules(std::string_view bytes, const std::string& name);
 
-}  // namespace ispace
+}  // namespace ispace::expect

@@ -17,7 +17,7 @@
 #include "scene/thing_kind.h"
 #include "sim/command.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 namespace {
 
@@ -433,4 +433,4 @@ class SentenceReader {
 
 Expectation parseExpectation(std::string_view text) { return SentenceReader(text).read(); }
 
-}  // namespace ispace
+}  // namespace ispace::expect

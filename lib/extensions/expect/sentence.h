@@ -14,7 +14,7 @@
 #include "geom/point.h"
 #include "sim/sim_time.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 /// A state of movers, of things or of zones that a sentence is about.
 struct Condition {
@@ -141,4 +141,4 @@ class SentenceError : public UsageError {
 /// Parses a sentence. \throws SentenceError that names the expected word and its position
 Expectation parseExpectation(std::string_view text);
 
-}  // namespace ispace
+}  // namespace ispace::expect

@@ -8,7 +8,7 @@
 #include "scene/thing_kind.h"
 #include "sim/state_watch.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 namespace {
 
@@ -167,4 +167,4 @@ std::vector<std::string> ThingStates::untold() const {
     return names;
 }
 
-}  // namespace ispace
+}  // namespace ispace::expect

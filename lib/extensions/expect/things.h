@@ -16,7 +16,7 @@
 #include "sim/events.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::expect {
 
 /// A world that is judged, with its name among others ("" of the only one).
 struct JudgedWorld {
@@ -81,4 +81,4 @@ class ThingStates {
     SimTime time_{};
 };
 
-}  // namespace ispace
+}  // namespace ispace::expect

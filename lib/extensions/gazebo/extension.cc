@@ -6,7 +6,7 @@
 namespace ispace::extension {
 
 Extension gazebo() {
-    return {.name = "gazebo", .add = [] { addImporters(gazeboImporters()); }};
+    return {.name = "gazebo", .add = [] { addImporters(gazebo::gazeboImporters()); }};
 }
 
 }  // namespace ispace::extension

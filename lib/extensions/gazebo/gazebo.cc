@@ -11,7 +11,7 @@
 #include "io/import_records.h"
 #include "io/mesh_files.h"
 
-namespace ispace {
+namespace ispace::gazebo {
 
 namespace {
 
@@ -28,7 +28,7 @@ class SdfReader {
               std::span<const std::string> model_folders, Budget& work)
         : files_(bytes, name, model_folders, work) {}
 
-    WorldShapes read() {
+    worlds::WorldShapes read() {
         const pugi::xml_node root = files_.root();
         const pugi::xml_node world = root.child("world");
         if (world.next_sibling("world"))
@@ -103,24 +103,24 @@ class SdfReader {
         while (node && node.type() != pugi::node_element) node = node.next_sibling();
         if (!node) return;
         const std::string_view kind = node.name();
-        WorldShape shape{WorldBox(), pose, around.model,
+        worlds::WorldShape shape{worlds::WorldBox(), pose, around.model,
                          around.line == 0 ? files_.lineOf(node) : around.line};
         files_.spend(node, kShapeWork);
         if (kind == "box") {
             const std::vector<double> size = files_.numbersIn(node, "size", 3);
             for (const double side : size)
                 if (!(side > 0)) files_.fail(node, "a box with a side of " + formatDouble(side));
-            shape.shape = WorldBox{{size[0], size[1], size[2]}};
+            shape.shape = worlds::WorldBox{{size[0], size[1], size[2]}};
         } else if (kind == "cylinder" || kind == "cone") {
             // A cone stands on floor that its base covers.
             shape.shape =
-                WorldCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
+                worlds::WorldCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
         } else if (kind == "capsule") {
             const double radius = files_.lengthIn(node, "radius");
-            shape.shape = WorldCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
+            shape.shape = worlds::WorldCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
         } else if (kind == "sphere") {
             const double radius = files_.lengthIn(node, "radius");
-            shape.shape = WorldCylinder{radius, 2 * radius};
+            shape.shape = worlds::WorldCylinder{radius, 2 * radius};
             shape.world_from_shape.linear().setIdentity();
         } else if (kind == "ellipsoid") {
             const std::vector<double> radii = files_.numbersIn(node, "radii", 3);
@@ -128,11 +128,11 @@ class SdfReader {
                 if (!(radius > 0))
                     files_.fail(node, "an ellipsoid with a radius of " + formatDouble(radius));
             if (radii[0] == radii[1])
-                shape.shape = WorldCylinder{radii[0], 2 * radii[2]};
+                shape.shape = worlds::WorldCylinder{radii[0], 2 * radii[2]};
             else
-                shape.shape = WorldBox{{2 * radii[0], 2 * radii[1], 2 * radii[2]}};
+                shape.shape = worlds::WorldBox{{2 * radii[0], 2 * radii[1], 2 * radii[2]}};
         } else if (kind == "polyline") {
-            WorldPolyline polyline{{}, files_.lengthIn(node, "height")};
+            worlds::WorldPolyline polyline{{}, files_.lengthIn(node, "height")};
             for (const pugi::xml_node point : node.children("point")) {
                 const std::vector<double> at = files_.numbersOf(point, point.child_value(), 2);
                 polyline.points.push_back({at[0], at[1]});
@@ -140,7 +140,7 @@ class SdfReader {
             files_.spend(node, kPointWork * polyline.points.size());
             shape.shape = std::move(polyline);
         } else if (kind == "mesh") {
-            WorldMesh mesh{std::string(trimmed(node.child_value("uri"))), {}};
+            worlds::WorldMesh mesh{std::string(trimmed(node.child_value("uri"))), {}};
             if (hasMeshSuffix(mesh.uri)) mesh.file = files_.fileNamed(node, mesh.uri);
             if (node.child("scale")) {
                 const std::vector<double> scale = files_.numbersIn(node, "scale", 3);
@@ -162,7 +162,7 @@ class SdfReader {
         found_.shapes.push_back(std::move(shape));
     }
 
-    void addUnread(const std::string& kind, const WorldShape& shape, const Transform& pose) {
+    void addUnread(const std::string& kind, const worlds::WorldShape& shape, const Transform& pose) {
         ++found_.left_out[kind];
         found_.unread.push_back({kind,
                                  {},
@@ -174,7 +174,7 @@ class SdfReader {
     SdfFiles files_;
     SdfFrames frames_{files_};
     std::vector<pugi::xml_node> includes_;  // that led to the model being read
-    WorldShapes found_;
+    worlds::WorldShapes found_;
 };
 
 }  // namespace
@@ -186,8 +186,8 @@ Document readSdf(std::string_view bytes, const std::string& name, const ImportOp
     ImportRecords out(schemas, name, options);
     Budget work(bytes.size(), options.max_work);
     withFileName(name, [&] {
-        WorldShapes world = SdfReader(bytes, name, options.model_folders, work).read();
-        writeWorldRoom(std::move(world), name, options, schemas, work, out);
+        worlds::WorldShapes world = SdfReader(bytes, name, options.model_folders, work).read();
+        worlds::writeWorldRoom(std::move(world), name, options, schemas, work, out);
     });
     return out.take();
 }
@@ -197,4 +197,4 @@ std::span<const Importer> gazeboImporters() {
     return kRows;
 }
 
-}  // namespace ispace
+}  // namespace ispace::gazebo

@@ -8,7 +8,7 @@
 
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::gazebo {
 
 /// Returns true for XML with the root `sdf`, see xmlRootName().
 bool isSdf(std::string_view bytes);
@@ -28,4 +28,4 @@ Document readSdf(std::string_view bytes, const std::string& name, const ImportOp
 /// The row of SDF, for addImporters().
 std::span<const Importer> gazeboImporters();
 
-}  // namespace ispace
+}  // namespace ispace::gazebo

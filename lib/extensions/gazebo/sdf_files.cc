@@ -19,7 +19,7 @@
 #include "io/import_records.h"
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::gazebo {
 
 namespace {
 
@@ -431,4 +431,4 @@ const Transform& SdfFrames::frameOf(pugi::xml_node node, const SdfScope& scope, 
     return *made;
 }
 
-}  // namespace ispace
+}  // namespace ispace::gazebo

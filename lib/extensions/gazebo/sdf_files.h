@@ -20,7 +20,7 @@
 #include "geom/rotation.h"
 #include "io/xml_file.h"
 
-namespace ispace {
+namespace ispace::gazebo {
 
 /// A world in SDF and the files that it names: models and meshes. They must lie, links followed,
 /// below one of its folders of models: the world's folder, `models` in and beside it, and
@@ -156,4 +156,4 @@ class SdfFrames {
     std::unordered_map<std::size_t, std::unique_ptr<Transform>> frames_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::gazebo

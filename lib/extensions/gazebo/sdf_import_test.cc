@@ -15,7 +15,7 @@
 #include "support/test_folder.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::gazebo {
 namespace {
 
 std::string worldOf(const std::string& models) {
@@ -389,4 +389,4 @@ TEST(SdfImport, BadMeshesAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::gazebo

@@ -14,7 +14,7 @@
 #include "scene/placement_schemas.h"
 #include "support/test_folder.h"
 
-namespace ispace {
+namespace ispace::gazebo {
 namespace {
 
 namespace fs = std::filesystem;
@@ -297,4 +297,4 @@ TEST_F(SdfIncludes, CirclesEnd) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::gazebo

@@ -10,10 +10,10 @@ Extension heads() {
     return {.name = "heads",
             .add =
                 [] {
-                    addSceneSchemas(headSchemas());
-                    addHeads();
+                    addSceneSchemas(heads::headSchemas());
+                    heads::addHeads();
                 },
-            .role = makeHeads};
+            .role = heads::makeHeads};
 }
 
 }  // namespace ispace::extension

@@ -12,7 +12,7 @@
 #include "scene/sensor/sensor_keys.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::heads {
 
 namespace {
 
@@ -157,4 +157,4 @@ void addHeads() {
     });
 }
 
-}  // namespace ispace
+}  // namespace ispace::heads

@@ -12,7 +12,7 @@
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::heads {
 
 /// Height of the axes without `at`, metres.
 constexpr double kHeadHeight = 0.4;
@@ -45,4 +45,4 @@ std::vector<Schema> headSchemas();
 /// Adds the kind of heads, for the program.
 void addHeads();
 
-}  // namespace ispace
+}  // namespace ispace::heads

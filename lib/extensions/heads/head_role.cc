@@ -19,7 +19,7 @@
 #include "extensions/heads/head.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::heads {
 
 namespace {
 
@@ -288,4 +288,4 @@ std::unique_ptr<RoleService> makeHeads(std::span<const RunRoom> rooms, std::uint
     return std::make_unique<Heads>(std::move(run));
 }
 
-}  // namespace ispace
+}  // namespace ispace::heads

@@ -7,7 +7,7 @@
 
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::heads {
 
 /// Makes the role HEAD of a run that has heads; null without any.
 ///
@@ -23,4 +23,4 @@ std::unique_ptr<RoleService> makeHeads(std::span<const RunRoom> rooms, std::uint
 /// Seconds between two changes of a head that turns.
 constexpr double kTurnStep = 0.05;
 
-}  // namespace ispace
+}  // namespace ispace::heads

@@ -23,7 +23,7 @@
 #include "server/session.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::heads {
 namespace {
 
 using std::chrono::milliseconds;
@@ -257,4 +257,4 @@ TEST(HeadService, IsForHeads) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::heads

@@ -10,8 +10,8 @@ namespace ispace::testing {
 /// Adds the extension to the program of the tests, once, before schemas are asked for.
 inline void addHeadsOnce() {
     [[maybe_unused]] static const bool is_added = [] {
-        addSceneSchemas(headSchemas());
-        addHeads();
+        addSceneSchemas(heads::headSchemas());
+        heads::addHeads();
         return true;
     }();
 }

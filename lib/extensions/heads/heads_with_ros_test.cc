@@ -15,7 +15,7 @@
 #include "server/server_state.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::heads {
 namespace {
 
 TEST(Head, IsTwoJointsOfItsRobot) {
@@ -28,7 +28,7 @@ TEST(Head, IsTwoJointsOfItsRobot) {
     World world(scene, std::chrono::milliseconds(5));
     Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
     ServerState state(simulation);
-    RosFeed feed(state, {});
+    ros::RosFeed feed(state, {});
     const std::uint32_t number = feed.numbersOf("/joint_states").front();
     feed.want(number);
     const auto joints = nlohmann::json::parse(*feed.entries().at(number).newest->json());
@@ -40,4 +40,4 @@ TEST(Head, IsTwoJointsOfItsRobot) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::heads

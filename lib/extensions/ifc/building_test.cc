@@ -18,7 +18,7 @@
 #include "support/test_ifc.h"
 #include "support/test_work.h"
 
-namespace ispace {
+namespace ispace::ifc {
 namespace {
 
 Building cabin(const std::string& name) {
@@ -353,4 +353,4 @@ TEST(Building, PackedIsNotTrusted) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension ifc() { return {.name = "ifc", .add = addIfc}; }
+Extension ifc() { return {.name = "ifc", .add = ifc::addIfc}; }
 
 }  // namespace ispace::extension

@@ -13,7 +13,7 @@
 #include "extensions/ifc/reader/step_file.h"
 #include "io/packed_mesh.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -105,4 +105,4 @@ void addIfc() {
     addExporters(kExporters);
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

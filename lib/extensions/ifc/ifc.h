@@ -11,7 +11,7 @@
 #include "io/mesh_files.h"
 #include "site/building_imports.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Returns true for the text of a STEP file with a schema of IFC.
 bool isIfc(std::string_view bytes);
@@ -55,4 +55,4 @@ ExportedFiles writeIfc(const Scene& scene, const std::string& title);
 /// Adds the rows of IFC: an importer, one of buildings, a reader of `mesh` files, an exporter.
 void addIfc();
 
-}  // namespace ispace
+}  // namespace ispace::ifc

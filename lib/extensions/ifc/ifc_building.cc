@@ -17,7 +17,7 @@
 #include "site/building_schemas.h"
 #include "site/site_scene.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -218,4 +218,4 @@ StoreyedDocument readIfcBuilding(std::string_view bytes, const std::string& oper
     return building;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

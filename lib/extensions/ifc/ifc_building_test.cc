@@ -16,7 +16,7 @@
 #include "support/test_ifc.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::ifc {
 namespace {
 
 /// Writes boxes as products of IFC4, in metres.
@@ -234,4 +234,4 @@ TEST(IfcBuilding, AsRoomsOfABuildingPayItsBudget) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ifc

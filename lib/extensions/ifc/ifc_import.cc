@@ -29,7 +29,7 @@
 #include "io/plan/plan_rooms.h"
 #include "io/unread.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -433,4 +433,4 @@ Document readIfc(std::string_view bytes, const std::string& operand, const Impor
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -10,7 +10,7 @@
 #include "extensions/ifc/reader/building.h"
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Finds the storey that ImportOptions::storey names: by its name, as BUILDING/NAME, or by its
 /// number, from 1 for the lowest; else the one that ImportOptions::slice_walls cuts, else of those
@@ -54,4 +54,4 @@ struct IfcStoreys {
 IfcStoreys readIfcStoreys(std::string_view bytes, const std::string& operand,
                           const ImportOptions& options, const Schemas& schemas);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -9,7 +9,7 @@
 #include "support/test_ifc.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::ifc {
 namespace {
 
 Document readCabin(const std::string& name, const ImportOptions& options = {}) {
@@ -306,4 +306,4 @@ TEST_P(Strangers, AreAsTheyShouldBe) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ifc

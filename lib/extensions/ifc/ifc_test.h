@@ -9,7 +9,7 @@ namespace ispace::testing {
 /// Adds the extension to the program of the tests, once.
 inline void addIfcOnce() {
     [[maybe_unused]] static const bool is_added = [] {
-        addIfc();
+        ifc::addIfc();
         return true;
     }();
 }

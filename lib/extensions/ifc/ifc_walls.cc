@@ -16,7 +16,7 @@
 #include "geom/planar_map.h"
 #include "io/plan/line_plan.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -206,4 +206,4 @@ std::vector<Polygon> WholeWalls::footprints() const {
     return footprints;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -13,7 +13,7 @@
 #include "geom/planar_map.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Walls without thickness become this thick, in metres: readers do not recognise single faces.
 constexpr double kThinWall = 0.005;
@@ -58,4 +58,4 @@ struct WholeWalls {
     [[nodiscard]] bool stands(const OpeningCut& cut) const;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -22,7 +22,7 @@
 #include "scene/bodies.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -441,4 +441,4 @@ ExportedFiles writeIfc(const Scene& scene, const std::string& title) {
     return RoomWriter(scene).write(title);
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

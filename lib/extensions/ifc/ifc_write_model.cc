@@ -10,7 +10,7 @@
 #include "base/number.h"
 #include "record/text.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -267,4 +267,4 @@ std::string IfcModel::finish(std::string_view name) const {
     return text + data_ + "ENDSEC;\nEND-ISO-10303-21;\n";
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -16,7 +16,7 @@
 #include "geom/pose.h"
 #include "io/sdf/sdf_parts.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Quotes a string: `'` and `\` doubled, everything beyond ASCII as \X2\ or \X4\.
 /// \pre text is UTF-8
@@ -91,4 +91,4 @@ class IfcModel {
     Id units_ = 0, context_ = 0, body_ = 0, up_ = 0, flat_ = 0;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -8,7 +8,7 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -122,4 +122,4 @@ TEST(IfcWrite, FixturesHaveTheirClass) {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::ifc

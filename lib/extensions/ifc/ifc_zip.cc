@@ -12,7 +12,7 @@
 #include "base/message.h"
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -120,4 +120,4 @@ std::string unzippedIfc(std::string_view bytes, const std::string& operand, Budg
     return text;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

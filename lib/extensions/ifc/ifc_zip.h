@@ -7,7 +7,7 @@
 
 #include "base/budget.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Returns true for a zip archive that names a file ending in `.ifc`.
 bool isIfcZip(std::string_view bytes);
@@ -18,4 +18,4 @@ bool isIfcZip(std::string_view bytes);
 /// \throws FormatError: damaged, encrypted, no such file, more than `work` has
 std::string unzippedIfc(std::string_view bytes, const std::string& operand, Budget& work);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

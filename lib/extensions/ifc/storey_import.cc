@@ -15,7 +15,7 @@
 #include "extensions/ifc/storey_plan.h"
 #include "io/plan/plan_rooms.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -448,4 +448,4 @@ std::vector<PlanRegion> writeStorey(const Building& building, std::size_t storey
     return import.rooms();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

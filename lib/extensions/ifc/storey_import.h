@@ -9,7 +9,7 @@
 #include "io/importers.h"
 #include "io/plan/plan_rooms.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Writes the records of a storey: walls, doors, windows, zones, furniture and inside points.
 /// \return the rooms that are kept
@@ -17,4 +17,4 @@ namespace ispace {
 std::vector<PlanRegion> writeStorey(const Building& building, std::size_t storey,
                                     const ImportOptions& options, Budget& work, ImportRecords& out);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -12,7 +12,7 @@
 #include "geom/predicates.h"
 #include "geom/tolerance.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -455,4 +455,4 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
     return walls;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -12,7 +12,7 @@
 #include "geom/polygon.h"
 #include "io/plan/plan_lines.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Computes the area of a section.
 std::vector<Region> areaOf(const BuildingSection& section);
@@ -93,4 +93,4 @@ class WallFaces {
     NearSegments search_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ifc

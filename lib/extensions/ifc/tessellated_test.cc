@@ -17,7 +17,7 @@
 #include "support/test_import.h"
 #include "support/test_work.h"
 
-namespace ispace {
+namespace ispace::ifc {
 namespace {
 
 Document read(const std::string& bytes, const ImportOptions& options = {}) {
@@ -197,4 +197,4 @@ TEST(IfcZip, RefusesBombsAndDamage) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace ispace {
+namespace ispace::judge {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::vector<std::pair<std::size_t, std::size_t>> bestAssignment(const Matrix& ga
     return pairs;
 }
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace ispace {
+namespace ispace::judge {
 
 /// A matrix of doubles, row by row.
 struct Matrix {
@@ -30,4 +30,4 @@ struct Matrix {
 /// programs that use it. \pre gains are finite
 std::vector<std::pair<std::size_t, std::size_t>> bestAssignment(const Matrix& gains);
 
-}  // namespace ispace
+}  // namespace ispace::judge

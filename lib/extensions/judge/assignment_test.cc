@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace ispace {
+namespace ispace::judge {
 namespace {
 
 double sumOf(const Matrix& gains, const std::vector<std::pair<std::size_t, std::size_t>>& pairs) {
@@ -57,4 +57,4 @@ TEST(Assignment, OfNoRowOrColumnIsEmpty) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension judge() { return {.name = "judge", .options = {{"coverage", makeTrackJudge}}}; }
+Extension judge() { return {.name = "judge", .options = {{"coverage", judge::makeTrackJudge}}}; }
 
 }  // namespace ispace::extension

@@ -25,7 +25,7 @@
 #include "geom/polygon.h"
 #include "sense/detection.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 namespace {
 
@@ -320,4 +320,4 @@ class TrackJudge : public OptionGroup {
 
 std::unique_ptr<OptionGroup> makeTrackJudge() { return std::make_unique<TrackJudge>(); }
 
-}  // namespace ispace
+}  // namespace ispace::judge

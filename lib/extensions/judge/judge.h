@@ -5,9 +5,9 @@
 
 #include "cli/option_group.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 /// Returns the options of `coverage --run DIR --tracks FILE`.
 std::unique_ptr<OptionGroup> makeTrackJudge();
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -13,7 +13,7 @@
 #include "drawing/plan/plan.h"
 #include "extensions/judge/judge_report.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 namespace {
 
@@ -212,4 +212,4 @@ std::string lossFilm(const Judgement& judgement, const Scene& scene, std::size_t
     return bytes + film.end();
 }
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -11,7 +11,7 @@
 #include "base/message.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 namespace {
 
@@ -279,4 +279,4 @@ ReportPage judgementPage(const Judgement& judgement, const Scene& scene,
     return page;
 }
 
-}  // namespace ispace
+}  // namespace ispace::judge

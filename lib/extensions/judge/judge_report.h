@@ -13,7 +13,7 @@
 #include "report/page/page.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 /// Truths by a circumstance, such as the zone that they were in.
 struct ClassTable {
@@ -66,4 +66,4 @@ std::string lossFilm(const Judgement& judgement, const Scene& scene, std::size_t
 /// Returns "loss-003-ann.gif".
 std::string lossFilmName(const Judgement& judgement, std::size_t index);
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 namespace {
 
@@ -344,4 +344,4 @@ std::optional<double> latencyOf(const JudgedRun& run, const ClearMot& clear) {
     return -along / squares;
 }
 
-}  // namespace ispace
+}  // namespace ispace::judge

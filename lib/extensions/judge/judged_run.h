@@ -11,7 +11,7 @@
 #include "extensions/judge/track_metrics.h"
 #include "scene/run/run_reader.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 /// Which movers of a record are truths.
 enum class TruthKind { All, People, Robots };
@@ -99,4 +99,4 @@ constexpr double kNearTruths = 1;
 /// Returns the number of other truths of a frame within kNearTruths.
 std::size_t neighboursOf(const JudgedRun& run, std::size_t frame, const TruthPlace& truth);
 
-}  // namespace ispace
+}  // namespace ispace::judge

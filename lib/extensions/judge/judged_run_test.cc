@@ -15,7 +15,7 @@
 #include "sense/formats/ros_messages.h"
 #include "sense/formats/ros_types.h"
 
-namespace ispace {
+namespace ispace::judge {
 namespace {
 
 constexpr const char* kRobots = "t,id,x,y,heading_deg\n";
@@ -226,4 +226,4 @@ TEST(TrackFiles, FaultsNameTheirLine) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::judge

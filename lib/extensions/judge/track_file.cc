@@ -16,7 +16,7 @@
 #include "sense/formats/ros_messages.h"
 #include "sense/formats/ros_types.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 namespace {
 
@@ -27,7 +27,7 @@ class TrackReader {
     explicit TrackReader(const std::string& name) : name_(name) {}
 
     TrackFile read(std::string_view bytes) {
-        if (isMcap(bytes))
+        if (reality::isMcap(bytes))
             readMarkers(bytes);
         else
             readLines(bytes);
@@ -57,7 +57,7 @@ class TrackReader {
     void readMarkers(std::string_view bytes) {
         std::set<std::string, std::less<>> topics;
         const std::string_view type = nameOf(RosType::MarkerArray);
-        readMcap(bytes, name_, [&](const McapMessage& message) {
+        reality::readMcap(bytes, name_, [&](const reality::McapMessage& message) {
             if (message.type == type) topics.emplace(message.topic);
         });
         std::string topic;
@@ -72,7 +72,7 @@ class TrackReader {
                                               : "no topic /tracks; markers are in " + all});
         }
         constexpr double kNanosecond = 1e-9;
-        readMcap(bytes, name_, [&](const McapMessage& message) {
+        reality::readMcap(bytes, name_, [&](const reality::McapMessage& message) {
             if (message.topic != topic || message.type != type) return;
             ++line_;
             for (const RosTrack& track : tracksOf(message.bytes)) {
@@ -274,4 +274,4 @@ std::optional<double> intervalOf(const TrackFile& file) {
     return span / steps;
 }
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -9,7 +9,7 @@
 
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 /// A position that a tracker told.
 struct TrackRow {
@@ -43,4 +43,4 @@ TrackFile readTracks(std::string_view bytes, const std::string& name);
 /// they are multiples of it but for rounding. Empty for a file of one time. \pre rows are sorted
 std::optional<double> intervalOf(const TrackFile& file);
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -11,7 +11,7 @@
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 namespace {
 
@@ -271,4 +271,4 @@ double ospa2(std::span<const PointTrack> truths, std::span<const PointTrack> tra
     return sum / static_cast<double>(most);
 }
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -12,7 +12,7 @@
 #include "extensions/judge/assignment.h"
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::judge {
 
 /// What is compared at one time: the truths and tracks there, by their indices in the run, and how
 /// similar each pair is, from 0 to 1 (rows: truths).
@@ -79,4 +79,4 @@ struct PointTrack {
 /// tracks. \throws UsageError as identityOf
 double ospa2(std::span<const PointTrack> truths, std::span<const PointTrack> tracks, double cutoff);
 
-}  // namespace ispace
+}  // namespace ispace::judge

@@ -14,7 +14,7 @@
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::judge {
 namespace {
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
@@ -300,4 +300,4 @@ TEST(TrackMetrics, TooManyPairsAreRefused) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::judge

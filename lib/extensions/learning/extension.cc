@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension learning() { return {.name = "learning", .options = {{"simrun", makeLearning}}}; }
+Extension learning() { return {.name = "learning", .options = {{"simrun", learning::makeLearning}}}; }
 
 }  // namespace ispace::extension

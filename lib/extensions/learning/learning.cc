@@ -25,7 +25,7 @@
 #include "cli/run_tool.h"
 #include "extensions/learning/vector_segment.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 namespace {
 
@@ -281,4 +281,4 @@ class Learning : public OptionGroup {
 
 std::unique_ptr<OptionGroup> makeLearning() { return std::make_unique<Learning>(); }
 
-}  // namespace ispace
+}  // namespace ispace::learning

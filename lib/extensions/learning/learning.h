@@ -5,9 +5,9 @@
 
 #include "cli/option_group.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 /// Returns the options of `simrun --vector N --shm NAME`.
 std::unique_ptr<OptionGroup> makeLearning();
 
-}  // namespace ispace
+}  // namespace ispace::learning

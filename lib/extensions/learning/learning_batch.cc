@@ -14,7 +14,7 @@
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 namespace {
 
@@ -157,4 +157,4 @@ std::size_t LearningBatch::bytesOfWorld() const {
     return (sum + worlds_.size() - 1) / worlds_.size();
 }
 
-}  // namespace ispace
+}  // namespace ispace::learning

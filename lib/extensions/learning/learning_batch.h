@@ -11,7 +11,7 @@
 
 #include "extensions/learning/learning_world.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 /// What follows the end of an episode, as in Gymnasium.
 enum class AutoReset {
@@ -93,4 +93,4 @@ class LearningBatch {
     std::unique_ptr<Scratches> scratches_;  // of the threads
 };
 
-}  // namespace ispace
+}  // namespace ispace::learning

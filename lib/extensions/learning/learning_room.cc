@@ -19,7 +19,7 @@
 #include "scene/placement_schemas.h"
 #include "sense/selection.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 namespace {
 
@@ -657,4 +657,4 @@ Scene furnitureVariant(const Scene& scene, const FurnitureRange& rules, std::uin
     throw *reason;
 }
 
-}  // namespace ispace
+}  // namespace ispace::learning

@@ -24,7 +24,7 @@
 #include "sim/steering.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 /// Random numbers of an episode: SplitMix64, the same on every machine.
 class EpisodeRandom {
@@ -292,4 +292,4 @@ Scene learningScene(const Scene& scene, const LearningTask& task);
 /// \throws FormatError if none of many draws is a valid room
 Scene furnitureVariant(const Scene& scene, const FurnitureRange& rules, std::uint64_t number);
 
-}  // namespace ispace
+}  // namespace ispace::learning

@@ -13,7 +13,7 @@
 #include "base/number.h"
 #include "record/yaml/yaml.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 namespace {
 
@@ -270,4 +270,4 @@ LearningTask readTask(std::string_view bytes, const std::string& name) {
     return completed(std::move(task));
 }
 
-}  // namespace ispace
+}  // namespace ispace::learning

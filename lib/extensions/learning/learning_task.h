@@ -14,7 +14,7 @@
 
 #include "sim/sim_time.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 /// The quantities of a step that rows of a task weigh and test.
 enum class TaskSignal {
@@ -110,4 +110,4 @@ LearningTask defaultTask(LearningTask::Kind kind);
 /// unknown key, word or bad number
 LearningTask readTask(std::string_view bytes, const std::string& name);
 
-}  // namespace ispace
+}  // namespace ispace::learning

@@ -16,7 +16,7 @@
 #include "sim/command.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::learning {
 namespace {
 
 Scene sceneOf(const std::string& environment, const std::string& layout = "") {
@@ -500,4 +500,4 @@ TEST(LearningTasks, FurnitureVariantsAreRoomsOfTheirNumber) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::learning

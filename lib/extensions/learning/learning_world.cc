@@ -13,7 +13,7 @@
 #include "sense/noise.h"
 #include "sense/selection.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 namespace {
 
@@ -652,4 +652,4 @@ LearningWorld::Episode LearningWorld::episode(const LearningSetting& setting) co
     return episode;
 }
 
-}  // namespace ispace
+}  // namespace ispace::learning

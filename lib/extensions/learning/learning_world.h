@@ -19,7 +19,7 @@
 #include "sim/navigator.h"
 #include "trace/moving_bodies.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 /// The rooms of a batch and their task.
 struct LearningSetting {
@@ -154,4 +154,4 @@ class LearningWorld {
     std::vector<float> actions_;      // of all steps so far
 };
 
-}  // namespace ispace
+}  // namespace ispace::learning

@@ -17,7 +17,7 @@
 #include "base/error.h"
 #include "base/message.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 namespace {
 
@@ -128,4 +128,4 @@ VectorSegment::~VectorSegment() {
     shm_unlink(name_.c_str());  // the learner may have done so
 }
 
-}  // namespace ispace
+}  // namespace ispace::learning

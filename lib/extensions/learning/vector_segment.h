@@ -17,7 +17,7 @@
 
 #include "extensions/learning/learning_batch.h"
 
-namespace ispace {
+namespace ispace::learning {
 
 class VectorSegment {
   public:
@@ -44,4 +44,4 @@ class VectorSegment {
     BatchArrays arrays_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::learning

@@ -7,8 +7,8 @@ namespace ispace::extension {
 
 Extension leds() {
     return {.name = "leds", .add = [] {
-                addSceneSchemas(ledSchemas());
-                addLeds();
+                addSceneSchemas(leds::ledSchemas());
+                leds::addLeds();
             }};
 }
 

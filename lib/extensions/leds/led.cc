@@ -6,7 +6,7 @@
 #include "env/body.h"
 #include "scene/sensor/sensor_keys.h"
 
-namespace ispace {
+namespace ispace::leds {
 
 namespace {
 
@@ -80,4 +80,4 @@ ThingBody ledBody(const Record& record) {
 
 void addLeds() { addThingKind("led", {.states = {"on", "color"}, .body = ledBody}); }
 
-}  // namespace ispace
+}  // namespace ispace::leds

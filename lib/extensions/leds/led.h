@@ -8,7 +8,7 @@
 #include "record/schema.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::leds {
 
 /// Returns the schema of `led`, a placement with the states `on` and `color`.
 std::vector<Schema> ledSchemas();
@@ -20,4 +20,4 @@ ThingBody ledBody(const Record& record);
 /// Adds the kind of LEDs, for the program.
 void addLeds();
 
-}  // namespace ispace
+}  // namespace ispace::leds

@@ -21,7 +21,7 @@
 #include "sense/selection.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::leds {
 namespace {
 
 using std::chrono::milliseconds;
@@ -124,4 +124,4 @@ TEST(Led, GoesWithItsRobot) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::leds

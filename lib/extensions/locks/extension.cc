@@ -5,6 +5,6 @@
 
 namespace ispace::extension {
 
-Extension locks() { return {.name = "locks", .add = addLocks, .role = makeLocks}; }
+Extension locks() { return {.name = "locks", .add = locks::addLocks, .role = locks::makeLocks}; }
 
 }  // namespace ispace::extension

@@ -14,7 +14,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/room_state.h"
 
-namespace ispace {
+namespace ispace::locks {
 
 namespace {
 
@@ -287,4 +287,4 @@ void addLocks() {
     addRecordCheck("human", checkExit);
 }
 
-}  // namespace ispace
+}  // namespace ispace::locks

@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::locks {
 
 /// The lock of a `door` record.
 struct Lock {
@@ -60,4 +60,4 @@ std::optional<Finding> checkExit(const Scene& scene, std::size_t record);
 /// Adds the keys of locks to the doors of scenes, and their kind, for the program.
 void addLocks();
 
-}  // namespace ispace
+}  // namespace ispace::locks

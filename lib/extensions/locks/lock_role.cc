@@ -18,7 +18,7 @@
 #include "geom/predicates.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::locks {
 
 namespace {
 
@@ -291,4 +291,4 @@ std::unique_ptr<RoleService> makeLocks(std::span<const RunRoom> rooms, std::uint
     return std::make_unique<Locks>(std::move(run));
 }
 
-}  // namespace ispace
+}  // namespace ispace::locks

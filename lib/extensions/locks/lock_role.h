@@ -7,7 +7,7 @@
 
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::locks {
 
 /// Makes the service of a run that has doors with `access`, `drive` or `strength`; else null.
 ///
@@ -24,4 +24,4 @@ std::unique_ptr<RoleService> makeLocks(std::span<const RunRoom> rooms, std::uint
 /// Seconds for which a tag opens a door.
 constexpr double kHeldOpen = 5;
 
-}  // namespace ispace
+}  // namespace ispace::locks

@@ -25,7 +25,7 @@
 #include "sim/activity.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::locks {
 namespace {
 
 using std::chrono::milliseconds;
@@ -623,4 +623,4 @@ TEST(LockService, IsForDoorsWithLocks) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::locks

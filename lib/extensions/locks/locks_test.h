@@ -9,7 +9,7 @@ namespace ispace::testing {
 /// Adds the extension to the program of the tests, once, before schemas are asked for.
 inline void addLocksOnce() {
     [[maybe_unused]] static const bool is_added = [] {
-        addLocks();
+        locks::addLocks();
         return true;
     }();
 }

@@ -8,16 +8,16 @@
 #include "extensions/mqtt/mqtt_topics.h"
 #include "scene/placement_schemas.h"
 
-namespace ispace {
+namespace ispace::locks {
 namespace {
 
 TEST(LockChecks, AreLocksOfHomeAssistant) {
     testing::addLocksOnce();
     const Schema& door = *sceneSchemas().find("door");
-    MqttEntity thing{"d", "door", {}};
+    mqtt::MqttEntity thing{"d", "door", {}};
     for (const char* key : {"open", "locked", "forced"})
         thing.keys.push_back({key, std::string("i/d/") + key, door.find(key)});
-    const std::vector<MqttMessage> messages = discoveryOf(thing, "i");
+    const std::vector<mqtt::MqttMessage> messages = mqtt::discoveryOf(thing, "i");
     ASSERT_EQ(messages.size(), 3U);
     EXPECT_TRUE(messages[0].topic.starts_with("homeassistant/cover/")) << messages[0].topic;
     EXPECT_TRUE(messages[1].topic.starts_with("homeassistant/lock/")) << messages[1].topic;
@@ -28,8 +28,8 @@ TEST(LockChecks, AreLocksOfHomeAssistant) {
     EXPECT_TRUE(messages[2].topic.starts_with("homeassistant/binary_sensor/"));
     EXPECT_NE(messages[2].payload.find(R"("device_class":"tamper")"), std::string::npos);
     EXPECT_EQ(messages[2].payload.find("command_topic"), std::string::npos);
-    EXPECT_EQ(payloadOf("locked", "1", true, door.find("locked")), "ON");
+    EXPECT_EQ(mqtt::payloadOf("locked", "1", true, door.find("locked")), "ON");
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::locks

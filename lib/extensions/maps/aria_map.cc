@@ -20,7 +20,7 @@
 #include "io/plan/plan_rooms.h"
 #include "record/text.h"
 
-namespace ispace {
+namespace ispace::maps {
 
 namespace {
 
@@ -337,4 +337,4 @@ Document readAriaMap(std::string_view bytes, const std::string& name, const Impo
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::maps

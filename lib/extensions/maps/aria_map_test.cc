@@ -10,7 +10,7 @@
 #include "env/level.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::maps {
 namespace {
 
 const std::string kMap =
@@ -212,4 +212,4 @@ TEST(AriaMap, LinesThatMissEachOther) { expectArea("ActivMediaLab.map", 38.2); }
 TEST(AriaMap, ClosedLines) { expectArea("triangle.map", 103.4); }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::maps

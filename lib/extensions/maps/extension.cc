@@ -6,7 +6,7 @@
 namespace ispace::extension {
 
 Extension maps() {
-    return {.name = "maps", .add = [] { addImporters(mapImporters()); }};
+    return {.name = "maps", .add = [] { addImporters(maps::mapImporters()); }};
 }
 
 }  // namespace ispace::extension

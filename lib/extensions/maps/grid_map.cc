@@ -11,7 +11,7 @@
 #include "io/map/cell_map.h"
 #include "record/text.h"
 
-namespace ispace {
+namespace ispace::maps {
 
 namespace {
 
@@ -131,4 +131,4 @@ std::span<const Importer> mapImporters() {
     return kRows;
 }
 
-}  // namespace ispace
+}  // namespace ispace::maps

@@ -3,7 +3,7 @@
 #include "extensions/maps/maps.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::maps {
 namespace {
 
 ImportOptions withResolution(double metres) {
@@ -75,4 +75,4 @@ TEST(GridMap, SurvivesDamage) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::maps

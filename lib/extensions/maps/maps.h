@@ -8,7 +8,7 @@
 
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::maps {
 
 /// Returns true if the first line is `2D-Map`.
 bool isAriaMap(std::string_view bytes);
@@ -40,4 +40,4 @@ Document readGridMap(std::string_view bytes, const std::string& name, const Impo
 /// The rows of these maps, for addImporters().
 std::span<const Importer> mapImporters();
 
-}  // namespace ispace
+}  // namespace ispace::maps

@@ -7,7 +7,7 @@
 namespace ispace::extension {
 
 Extension memory() {
-    return {.name = "memory", .add = [] { addSceneSchemas(volumeSchemas()); }, .role = makeMemory};
+    return {.name = "memory", .add = [] { addSceneSchemas(memory::volumeSchemas()); }, .role = memory::makeMemory};
 }
 
 }  // namespace ispace::extension

@@ -19,7 +19,7 @@
 #include "sense/ultrasound_burst.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::memory {
 
 namespace {
 
@@ -360,4 +360,4 @@ std::unique_ptr<RoleService> makeMemory(std::span<const RunRoom> rooms, std::uin
     return std::make_unique<Memory>(std::move(run));
 }
 
-}  // namespace ispace
+}  // namespace ispace::memory

@@ -10,7 +10,7 @@
 #include "extensions/memory/volume.h"
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::memory {
 
 /// Makes the role MEMORY of a run that has volumes or ultrasonic tags; null without any.
 ///
@@ -21,4 +21,4 @@ namespace ispace {
 /// \throws FormatError as volumesOf()
 std::unique_ptr<RoleService> makeMemory(std::span<const RunRoom> rooms, std::uint64_t seed);
 
-}  // namespace ispace
+}  // namespace ispace::memory

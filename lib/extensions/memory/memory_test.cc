@@ -16,7 +16,7 @@
 #include "scene/scene.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::memory {
 namespace {
 
 constexpr std::string_view kRoom = R"(#env 1
@@ -247,4 +247,4 @@ TEST(Memory, IsNoneWithoutVolumesAndTags) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::memory

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace ispace {
+namespace ispace::memory {
 
 bool VolumeIndex::store(Volume volume) {
     const auto known = volumes_.find(volume.id);
@@ -97,4 +97,4 @@ std::vector<std::string> Touches::tagsIn(std::string_view volume) const {
     return tags;
 }
 
-}  // namespace ispace
+}  // namespace ispace::memory

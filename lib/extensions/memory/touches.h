@@ -14,7 +14,7 @@
 #include "sim/sim_time.h"
 #include "trace/moving_bodies.h"
 
-namespace ispace {
+namespace ispace::memory {
 
 /// The volumes of a run, by id, and those about a point.
 class VolumeIndex {
@@ -81,4 +81,4 @@ class Touches {
     std::map<std::pair<std::string, std::string>, Stay> stays_;  // by tag and volume
 };
 
-}  // namespace ispace
+}  // namespace ispace::memory

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "scene/sensor/sensor_keys.h"
 
-namespace ispace {
+namespace ispace::memory {
 
 bool Volume::contains(Point3 point) const {
     const Vec3 way = point - at;
@@ -87,4 +87,4 @@ std::vector<Volume> volumesOf(const Scene& scene, const std::string& prefix, std
     return volumes;
 }
 
-}  // namespace ispace
+}  // namespace ispace::memory

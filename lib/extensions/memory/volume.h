@@ -12,7 +12,7 @@
 #include "record/schema.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::memory {
 
 /// A part of a room, in the frame of its room.
 struct Volume {
@@ -43,4 +43,4 @@ std::vector<Schema> volumeSchemas();
 /// \throws FormatError at a record that is neither a ball nor a box
 std::vector<Volume> volumesOf(const Scene& scene, const std::string& prefix, std::size_t room);
 
-}  // namespace ispace
+}  // namespace ispace::memory

@@ -14,7 +14,7 @@
 #include "io/import_records.h"
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -312,4 +312,4 @@ std::optional<Point3> CloudFile::textPoint(TextPlace& at) const {
     return Point3{p[0], p[1], p[2]};
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

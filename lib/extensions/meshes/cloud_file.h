@@ -10,7 +10,7 @@
 
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 /// Returns true for PCD, LAS, and PLY without faces.
 bool isPointCloud(std::string_view bytes);
@@ -84,4 +84,4 @@ class CloudFile {
     char up_ = 'z';
 };
 
-}  // namespace ispace
+}  // namespace ispace::meshes

@@ -20,7 +20,7 @@
 #include "io/map/map_rooms.h"
 #include "raster/cells.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -442,4 +442,4 @@ Document readPointCloud(std::string_view bytes, const std::string& name,
     return document;
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

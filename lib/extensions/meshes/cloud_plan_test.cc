@@ -14,7 +14,7 @@
 #include "extensions/meshes/meshes.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::meshes {
 namespace {
 
 using Points = std::vector<std::array<double, 3>>;
@@ -286,4 +286,4 @@ TEST(CloudPlan, DamageIsAnError) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::meshes

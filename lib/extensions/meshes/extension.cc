@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension meshes() { return {.name = "meshes", .add = addMeshes}; }
+Extension meshes() { return {.name = "meshes", .add = meshes::addMeshes}; }
 
 }  // namespace ispace::extension

@@ -18,7 +18,7 @@
 #include "support/test_import.h"
 #include "support/test_paths.h"
 
-namespace ispace {
+namespace ispace::meshes {
 namespace {
 
 using Vertex = std::array<float, 3>;
@@ -484,4 +484,4 @@ TEST_F(MeshFile, IsAPlanWhenItIsCut) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::meshes

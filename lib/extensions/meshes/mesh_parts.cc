@@ -11,7 +11,7 @@
 #include "base/message.h"
 #include "io/import_records.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -128,4 +128,4 @@ std::string objUpAxis(std::string_view bytes, double metres) {
 
 bool isMeshFile(std::string_view bytes) { return meshFormatOf(bytes).has_value(); }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

@@ -12,7 +12,7 @@
 
 #include "io/packed_mesh.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 /// Formats of meshes that are read.
 enum class MeshFormat { Obj, Stl, Ply, Collada, Gltf, Glb };
@@ -52,4 +52,4 @@ bool isMeshFile(std::string_view bytes);
 constexpr std::size_t kMaxMeshNodes = 1'000'000;  ///< each instance counts
 constexpr std::size_t kMaxMeshNodeDepth = 1000;
 
-}  // namespace ispace
+}  // namespace ispace::meshes

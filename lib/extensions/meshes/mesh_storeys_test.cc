@@ -11,7 +11,7 @@
 #include "support/test_folder.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::meshes {
 namespace {
 
 bool contains(const std::string& text, const std::string& part) {
@@ -70,4 +70,4 @@ TEST(MeshesOfBuildings, AreReadAndPaidForOnce) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::meshes

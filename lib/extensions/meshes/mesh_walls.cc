@@ -19,7 +19,7 @@
 #include "io/plan/cut_paths.h"
 #include "io/plan/line_plan.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -108,4 +108,4 @@ Document readMeshWalls(const std::string& operand, const ImportOptions& options,
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

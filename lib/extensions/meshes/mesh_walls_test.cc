@@ -8,7 +8,7 @@
 #include "support/test_folder.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::meshes {
 namespace {
 
 /// A file of boxes as OBJ.
@@ -155,4 +155,4 @@ TEST(MeshWalls, CrossingsThatTakeLongAreRefusedAtOnce) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::meshes

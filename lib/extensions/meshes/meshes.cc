@@ -12,7 +12,7 @@
 #include "io/packed_mesh.h"
 #include "record/text.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -87,4 +87,4 @@ void addMeshes() {
     addMeshReaders(kReaders);
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

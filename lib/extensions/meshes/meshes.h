@@ -8,7 +8,7 @@
 
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 /// Returns a document of one `mesh` record that names the operand, not loaded; its id comes from
 /// the file's name. \throws FormatError for "-": records need a name, and other files may belong to
@@ -37,4 +37,4 @@ Document readPointCloud(std::string_view bytes, const std::string& name,
 /// no rights; a file that makes it crash, grow or hang is an ordinary bad file.
 void addMeshes();
 
-}  // namespace ispace
+}  // namespace ispace::meshes

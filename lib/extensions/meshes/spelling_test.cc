@@ -11,7 +11,7 @@
 #include "support/test_folder.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::meshes {
 namespace {
 
 /// A cloud of the walls of a room of 6 m x 4 m, with these points beside it.
@@ -81,4 +81,4 @@ TEST(MeshSpelling, CapitalsInStlAndBlanksInCollada) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::meshes

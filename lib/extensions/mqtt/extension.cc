@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension mqtt() { return {.name = "mqtt", .bridge = makeMqttOptions}; }
+Extension mqtt() { return {.name = "mqtt", .bridge = mqtt::makeMqttOptions}; }
 
 }  // namespace ispace::extension

@@ -12,7 +12,7 @@
 #include "extensions/mqtt/mqtt_topics.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 namespace {
 
@@ -94,7 +94,7 @@ MqttBridge::MqttBridge(ServerState& state, std::unique_ptr<MqttClient> client, s
 }
 
 std::string MqttBridge::topicOf(std::string_view id, std::string_view key) const {
-    return ispace::topicOf(prefix_, id, key);
+    return mqtt::topicOf(prefix_, id, key);
 }
 
 /// Describes new things, or all of them after a connection, and removes those that are gone.
@@ -263,4 +263,4 @@ void MqttBridge::end() {
     client_->close();
 }
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

@@ -18,7 +18,7 @@
 #include "server/server.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 /// Publishes the states of the room on a broker of MQTT, and carries out commands from there. Call
 /// before Server::run(). \throws FormatError as connectMqtt()
@@ -80,4 +80,4 @@ class MqttBridge final : public Bridge {
     std::int64_t changes_ = -1;  // of the worlds when they were introduced
 };
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

@@ -23,7 +23,7 @@
 #include "support/test_source.h"
 #include "support/test_talk.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 namespace {
 
 using testing::MemoryBroker;
@@ -541,4 +541,4 @@ TEST_F(BridgeTest, CamerasHavePictures) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::mqtt

@@ -22,7 +22,7 @@
 #include "base/message.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 namespace {
 
@@ -341,4 +341,4 @@ std::unique_ptr<MqttClient> connectMqtt(const MqttOptions& options, std::functio
     return std::make_unique<MosquittoClient>(options, std::move(wake));
 }
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace ispace {
+namespace ispace::mqtt {
 
 /// A message of MQTT.
 struct MqttMessage {
@@ -55,4 +55,4 @@ std::string statusTopic(const std::string& prefix);
 /// \throws FormatError if the library is missing, or the broker cannot be reached or refuses
 std::unique_ptr<MqttClient> connectMqtt(const MqttOptions& options, std::function<void()> wake);
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

@@ -10,7 +10,7 @@
 #include "env/point_location.h"
 #include "server/session_sensors.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 namespace {
 
@@ -166,4 +166,4 @@ void MqttMovers::followErrands() {
     });
 }
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

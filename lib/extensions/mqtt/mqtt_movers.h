@@ -14,7 +14,7 @@
 #include "server/server_state.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 /// What home automation knows of robots, people and cameras, which have no states of the room:
 /// PREFIX/ID/vacuum, the state and commands of a vacuum cleaner; PREFIX/ID/presence, home or
@@ -58,4 +58,4 @@ class MqttMovers {
     SimTime next_{}, next_picture_{};
 };
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

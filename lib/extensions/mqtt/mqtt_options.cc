@@ -8,7 +8,7 @@
 #include "base/message.h"
 #include "extensions/mqtt/mqtt_bridge.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 namespace {
 
@@ -65,4 +65,4 @@ void MqttGroup::open(Server& server, Simulation& /*simulation*/, const BridgeRun
 
 std::unique_ptr<BridgeGroup> makeMqttOptions() { return std::make_unique<MqttGroup>(); }
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

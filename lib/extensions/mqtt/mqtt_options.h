@@ -5,9 +5,9 @@
 
 #include "cli/run_bridge.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 /// Returns the option --mqtt of simrun and its like.
 std::unique_ptr<BridgeGroup> makeMqttOptions();
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

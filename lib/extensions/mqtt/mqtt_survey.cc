@@ -10,7 +10,7 @@
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 namespace {
 
@@ -91,4 +91,4 @@ bool MqttSurvey::answer(const MqttMessage& message) {
     return true;
 }
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

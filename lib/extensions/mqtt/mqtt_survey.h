@@ -8,7 +8,7 @@
 
 #include "extensions/mqtt/mqtt_client.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 /// The prefix of a run on its broker: asks whether another run serves it, and finds what an earlier
 /// one left there.
@@ -33,4 +33,4 @@ class MqttSurvey {
     std::set<std::string> leftovers_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

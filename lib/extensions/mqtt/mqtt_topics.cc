@@ -13,7 +13,7 @@
 #include "sense/formats/reading_fields.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 namespace {
 
@@ -377,4 +377,4 @@ std::vector<MqttMessage> discoveryOf(const MqttEntity& thing, const std::string&
     return messages;
 }
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

@@ -11,7 +11,7 @@
 #include "extensions/mqtt/mqtt_client.h"
 #include "scene/room_state.h"
 
-namespace ispace {
+namespace ispace::mqtt {
 
 /// Returns an id as a part of topics: the characters that these reserve are written as two
 /// underscores and two hexadecimal digits. Distinct ids stay distinct.
@@ -52,4 +52,4 @@ inline constexpr std::string_view kStopRobot = "stop", kReturnRobot = "return_to
 /// of the component that the kind of the thing names (ThingKind::entities), else of the key's type.
 std::vector<MqttMessage> discoveryOf(const MqttEntity& thing, const std::string& prefix);
 
-}  // namespace ispace
+}  // namespace ispace::mqtt

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension nav2() { return {.name = "nav2", .add = addMasks}; }
+Extension nav2() { return {.name = "nav2", .add = nav2::addMasks}; }
 
 }  // namespace ispace::extension

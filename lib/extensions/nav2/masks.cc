@@ -13,7 +13,7 @@
 #include "raster/grid.h"
 #include "report/map/map_parts.h"
 
-namespace ispace {
+namespace ispace::nav2 {
 
 namespace {
 
@@ -130,4 +130,4 @@ void addMasks() {
     addCoverageFormats(kCoverageFormats);
 }
 
-}  // namespace ispace
+}  // namespace ispace::nav2

@@ -12,7 +12,7 @@
 #include "report/coverage_formats.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::nav2 {
 
 /// Writes a mask for Nav2's keep-out filter, with the cells of writeRosMap(). Cells with their
 /// centre in a zone or on its edge are marked; a zone too small for that marks the cell around its
@@ -33,4 +33,4 @@ CoverageFiles coverageKeepoutMask(const Coverage& coverage, double cell,
 /// Adds the masks to the formats of rooms and of coverage.
 void addMasks();
 
-}  // namespace ispace
+}  // namespace ispace::nav2

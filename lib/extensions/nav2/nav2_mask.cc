@@ -5,7 +5,7 @@
 
 #include "io/map/ros_map_text.h"
 
-namespace ispace {
+namespace ispace::nav2 {
 
 const Nav2Filter kKeepoutFilter{"nav2_costmap_2d::KeepoutFilter",        "keepout", 0, 0, 1,
                                 "100 (black): keep out; 0 (white): free"};
@@ -59,4 +59,4 @@ Nav2MaskFiles nav2MaskFiles(const Nav2Mask& mask, const std::string& picture_nam
     return {mapText(mask, picture_name), std::move(picture)};
 }
 
-}  // namespace ispace
+}  // namespace ispace::nav2

@@ -9,7 +9,7 @@
 
 #include "raster/grid.h"
 
-namespace ispace {
+namespace ispace::nav2 {
 
 /// A filter of Nav2's costmaps (nav2_costmap_2d/costmap_filters).
 struct Nav2Filter {
@@ -43,4 +43,4 @@ struct Nav2MaskFiles {
 /// \param picture_name how the map names the picture
 Nav2MaskFiles nav2MaskFiles(const Nav2Mask& mask, const std::string& picture_name);
 
-}  // namespace ispace
+}  // namespace ispace::nav2

@@ -5,7 +5,7 @@
 namespace ispace::extension {
 
 Extension navigation() {
-    return {.name = "navigation", .options = {{"coverage", makeNavigationJudge}}};
+    return {.name = "navigation", .options = {{"coverage", navigation::makeNavigationJudge}}};
 }
 
 }  // namespace ispace::extension

@@ -23,7 +23,7 @@
 #include "sim/collision.h"
 #include "sim/path_finder.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 namespace {
 
@@ -232,4 +232,4 @@ class NavigationJudge : public OptionGroup {
 
 std::unique_ptr<OptionGroup> makeNavigationJudge() { return std::make_unique<NavigationJudge>(); }
 
-}  // namespace ispace
+}  // namespace ispace::navigation

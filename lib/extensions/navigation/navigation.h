@@ -5,9 +5,9 @@
 
 #include "cli/option_group.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 /// Returns the options of `coverage --run DIR --goal X,Y`.
 std::unique_ptr<OptionGroup> makeNavigationJudge();
 
-}  // namespace ispace
+}  // namespace ispace::navigation

@@ -11,7 +11,7 @@
 
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 namespace {
 
@@ -146,4 +146,4 @@ NavigationFigures navigationFigures(const NavigationRun& run, const NavigationGo
     return figures;
 }
 
-}  // namespace ispace
+}  // namespace ispace::navigation

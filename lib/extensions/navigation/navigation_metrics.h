@@ -15,7 +15,7 @@
 
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 /// A person in the room of the robot.
 struct PersonGap {
@@ -100,4 +100,4 @@ struct NavigationFigures {
 /// Computes the figures. O(moments * people) \pre a moment
 NavigationFigures navigationFigures(const NavigationRun& run, const NavigationGoal& goal);
 
-}  // namespace ispace
+}  // namespace ispace::navigation

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-namespace ispace {
+namespace ispace::navigation {
 namespace {
 
 /// A run along x with the robot at `place(t)`, every 0.1 s from 0 to `end`.
@@ -119,4 +119,4 @@ TEST(NavigationMetrics, AChangeOfRoomsIsNoWay) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::navigation

@@ -11,7 +11,7 @@
 #include "base/message.h"
 #include "scene/bodies.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 namespace {
 
@@ -137,4 +137,4 @@ RecordedNavigation recordedNavigation(std::vector<RoomRecord> records, const std
     return recorded;
 }
 
-}  // namespace ispace
+}  // namespace ispace::navigation

@@ -11,7 +11,7 @@
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 /// The record of a room, whose moments are read one after another.
 struct RoomRecord {
@@ -41,4 +41,4 @@ void addRadii(const Scene& scene, MoverRadii& radii);
 RecordedNavigation recordedNavigation(std::vector<RoomRecord> records, const std::string& robot,
                                       const MoverRadii& radii);
 
-}  // namespace ispace
+}  // namespace ispace::navigation

@@ -16,7 +16,7 @@
 #include "base/number.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::string navigationText(const NavigationJudgement& judgement) {
            formatDouble(judgement.goal.reach) + " m from it\n" + aligned(rows, "lr");
 }
 
-}  // namespace ispace
+}  // namespace ispace::navigation

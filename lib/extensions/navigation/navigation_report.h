@@ -5,7 +5,7 @@
 
 #include "extensions/navigation/navigation_metrics.h"
 
-namespace ispace {
+namespace ispace::navigation {
 
 /// All that is found about a robot's run.
 struct NavigationJudgement {
@@ -34,4 +34,4 @@ std::string navigationJson(const NavigationJudgement& judgement);
 /// Writes aligned lines for people.
 std::string navigationText(const NavigationJudgement& judgement);
 
-}  // namespace ispace
+}  // namespace ispace::navigation

@@ -7,7 +7,7 @@
 namespace ispace::extension {
 
 Extension nodes() {
-    return {.name = "nodes", .add = [] { addSceneSchemas(nodeSchemas()); }, .role = makeNodes};
+    return {.name = "nodes", .add = [] { addSceneSchemas(nodes::nodeSchemas()); }, .role = nodes::makeNodes};
 }
 
 }  // namespace ispace::extension

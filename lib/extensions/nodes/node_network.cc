@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 
-namespace ispace {
+namespace ispace::nodes {
 
 namespace {
 
@@ -79,4 +79,4 @@ std::vector<NodeMessage> NodeNetwork::arrived(SimTime now) {
     return messages;
 }
 
-}  // namespace ispace
+}  // namespace ispace::nodes

@@ -13,7 +13,7 @@
 
 #include "extensions/nodes/node_record.h"
 
-namespace ispace {
+namespace ispace::nodes {
 
 /// A message on its way.
 struct NodeMessage {
@@ -65,4 +65,4 @@ class NodeNetwork {
     std::map<std::tuple<SimTime, std::size_t, std::int64_t>, std::string> on_the_way_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::nodes

@@ -11,7 +11,7 @@
 #include "base/message.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::nodes {
 
 namespace {
 
@@ -140,4 +140,4 @@ std::vector<Node> nodesOf(const Scene& scene, const std::string& prefix) {
     return nodes;
 }
 
-}  // namespace ispace
+}  // namespace ispace::nodes

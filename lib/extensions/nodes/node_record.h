@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "sim/sim_time.h"
 
-namespace ispace {
+namespace ispace::nodes {
 
 /// A node and its line.
 struct Node {
@@ -39,4 +39,4 @@ std::vector<Schema> nodeSchemas();
 /// deviation of a delay without a mean
 std::vector<Node> nodesOf(const Scene& scene, const std::string& prefix);
 
-}  // namespace ispace
+}  // namespace ispace::nodes

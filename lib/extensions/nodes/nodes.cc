@@ -14,7 +14,7 @@
 #include "extensions/nodes/node_network.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::nodes {
 
 namespace {
 
@@ -199,4 +199,4 @@ std::unique_ptr<RoleService> makeNodes(std::span<const RunRoom> rooms, std::uint
     return std::make_unique<Nodes>(std::move(nodes), *rooms.front().simulation, seed);
 }
 
-}  // namespace ispace
+}  // namespace ispace::nodes

@@ -10,7 +10,7 @@
 #include "extensions/nodes/node_record.h"
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::nodes {
 
 /// Makes the role NODE of a run that has nodes; null without any.
 ///
@@ -21,4 +21,4 @@ namespace ispace {
 /// \throws FormatError as nodesOf()
 std::unique_ptr<RoleService> makeNodes(std::span<const RunRoom> rooms, std::uint64_t seed);
 
-}  // namespace ispace
+}  // namespace ispace::nodes

@@ -15,7 +15,7 @@
 #include "scene/scene.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::nodes {
 namespace {
 
 constexpr std::string_view kRoom = R"(#env 1
@@ -287,4 +287,4 @@ TEST_F(NodesTest, TracksAreToldByWorldAndNodes) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::nodes

@@ -18,7 +18,7 @@
 #include "scene/bodies.h"
 #include "sim/collision.h"
 
-namespace ispace {
+namespace ispace::postures {
 
 namespace {
 
@@ -511,12 +511,12 @@ class TopSpots {
     /// Returns the height of the top that bears the whole thing there, free of others.
     [[nodiscard]] std::optional<double> topAt(Point2 at) {
         constexpr double kHighest = 1.6;
-        const auto top = ispace::topAt(below_, at);
+        const auto top = postures::topAt(below_, at);
         if (!top || *top > kHighest) return std::nullopt;
         const Pose2 pose{at, frame_.world_from_body.heading};
         for (const double x : {-frame_.length / 2, frame_.length / 2})
             for (const double y : {-frame_.width / 2, frame_.width / 2})
-                if (ispace::topAt(below_, pose * Point2{x, y}) != top) return std::nullopt;
+                if (postures::topAt(below_, pose * Point2{x, y}) != top) return std::nullopt;
         return isFree(at, *top) ? top : std::nullopt;
     }
 
@@ -641,4 +641,4 @@ void addDeeds() {
                    .end = lowerArms});
 }
 
-}  // namespace ispace
+}  // namespace ispace::postures

@@ -12,7 +12,7 @@
 #include "sim/person_verbs.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::postures {
 
 /// Where a person sits or lies: the pose of its trunk, and the height of the thing below it.
 struct RestingPlace {
@@ -52,4 +52,4 @@ std::optional<Point3> pointOf(const World& world, const std::string& id);
 /// Adds the verbs, for the program.
 void addDeeds();
 
-}  // namespace ispace
+}  // namespace ispace::postures

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension postures() { return {.name = "postures", .add = addPostures}; }
+Extension postures() { return {.name = "postures", .add = postures::addPostures}; }
 
 }  // namespace ispace::extension

@@ -21,7 +21,7 @@
 #include "scene/thing_kind.h"
 #include "sim/collision.h"
 
-namespace ispace {
+namespace ispace::postures {
 
 namespace {
 
@@ -541,4 +541,4 @@ void addPostures() {
     addDeeds();
 }
 
-}  // namespace ispace
+}  // namespace ispace::postures

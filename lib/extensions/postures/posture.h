@@ -12,7 +12,7 @@
 #include "scene/bodies.h"
 #include "scene/findings/findings.h"
 
-namespace ispace {
+namespace ispace::postures {
 
 enum class Posture { Stand, Sit, Lie, Fallen };
 
@@ -73,4 +73,4 @@ std::optional<Finding> checkBody(const Scene& scene, std::size_t record);
 /// `stands`, `points at`, `reaches` and `carries` of plans of days.
 void addPostures();
 
-}  // namespace ispace
+}  // namespace ispace::postures

@@ -40,7 +40,7 @@
 #include "support/test_readings.h"
 #include "trace/render/render.h"
 
-namespace ispace {
+namespace ispace::postures {
 namespace {
 
 using std::chrono::milliseconds;
@@ -1226,4 +1226,4 @@ TEST(Deeds, AreReadWithHints) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::postures

@@ -10,7 +10,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::postures {
 namespace {
 
 TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
@@ -21,8 +21,8 @@ TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
         readRecordText("#env 1\nispace size=10,8\ncube id=cup at=2,0 size=0.1 carried=ann\n",
                        "room.env", sceneSchemas()),
         &placed, shippedDevices());
-    EXPECT_EQ(readPaths(parseWays("wander:2,5s"), room, 7).people.size(), 2U);
+    EXPECT_EQ(presence::readPaths(presence::parseWays("wander:2,5s"), room, 7).people.size(), 2U);
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::postures

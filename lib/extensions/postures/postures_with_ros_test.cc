@@ -15,7 +15,7 @@
 #include "server/server_state.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::postures {
 namespace {
 
 TEST(Postures, AreMarkersOfRos) {
@@ -31,7 +31,7 @@ TEST(Postures, AreMarkersOfRos) {
         World world(scene, std::chrono::milliseconds(100));
         Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
         ServerState state(simulation);
-        RosFeed feed(state, {});
+        ros::RosFeed feed(state, {});
         const std::uint32_t number = feed.numbersOf("/people").front();
         feed.want(number);
         simulation.allow(1);
@@ -64,4 +64,4 @@ TEST(Postures, AreMarkersOfRos) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::postures

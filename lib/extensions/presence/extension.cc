@@ -5,7 +5,7 @@
 namespace ispace::extension {
 
 Extension presence() {
-    return {.name = "presence", .objective = makePresenceObjective, .coverage = makePresence};
+    return {.name = "presence", .objective = presence::makePresenceObjective, .coverage = presence::makePresence};
 }
 
 }  // namespace ispace::extension

@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 std::vector<std::size_t> PeoplePaths::firsts() const {
     std::vector<std::size_t> firsts(people.size() + 1, pieces.size());
@@ -66,4 +66,4 @@ void visitPeople(RunReader& reader, const PersonVisit& visit) {
                 visit(member.id, reader.time(), state.pose.position);
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -11,7 +11,7 @@
 #include "geom/point.h"
 #include "scene/run/run_reader.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 /// A piece of a person's way.
 struct PathPiece {
@@ -63,4 +63,4 @@ using PersonVisit = std::function<void(const std::string& id, double time, Point
 /// Visits the people of a recorded run from the next moment on. \throws as the reader
 void visitPeople(RunReader& reader, const PersonVisit& visit);
 
-}  // namespace ispace
+}  // namespace ispace::presence

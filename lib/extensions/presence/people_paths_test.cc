@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ispace {
+namespace ispace::presence {
 namespace {
 
 TEST(PathCutter, CutsWaysIntoPieces) {
@@ -45,4 +45,4 @@ TEST(PathCutter, ReadsTheRecordOfARun) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::presence

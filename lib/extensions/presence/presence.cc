@@ -10,7 +10,7 @@
 #include "geom/tolerance.h"
 #include "sense/motion_sense.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 PresenceView::PresenceView(const PeoplePaths& ways, double plane)
     : ways_(ways), firsts_(ways.firsts()) {
@@ -135,4 +135,4 @@ Presence measurePresence(const Scene& scene, const PeoplePaths& ways, double pla
     return presence;
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 /// A person counts as detected on a piece of way if a sensor detects the person at its beginning or
 /// within this time after it, seconds.
@@ -72,4 +72,4 @@ struct Presence {
 /// scene. O(pieces * sensors); deterministic for any number of threads.
 Presence measurePresence(const Scene& scene, const PeoplePaths& ways, double plane);
 
-}  // namespace ispace
+}  // namespace ispace::presence

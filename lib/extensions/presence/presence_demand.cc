@@ -8,7 +8,7 @@
 #include "extensions/presence/presence.h"
 #include "sense/motion_sense.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::shared_ptr<const Demand> presenceDemand(std::shared_ptr<const PeoplePaths> 
     return std::make_shared<PresenceDemand>(std::move(ways), plane);
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -9,7 +9,7 @@
 #include "extensions/presence/presence.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::presence {
 namespace {
 
 /// Two halves, which a narrow gap joins.
@@ -78,4 +78,4 @@ TEST(ArrangePresence, RefusesSensorsWithoutSenseOfMotionAndWaysOfNobody) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::presence

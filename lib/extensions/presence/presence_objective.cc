@@ -9,7 +9,7 @@
 #include "extensions/presence/presence_options.h"
 #include "extensions/presence/presence_paths.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 namespace {
 
@@ -56,4 +56,4 @@ std::unique_ptr<ObjectiveGroup> makePresenceObjective() {
     return std::make_unique<PresenceObjective>();
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

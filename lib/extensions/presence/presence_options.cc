@@ -13,7 +13,7 @@
 #include "extensions/presence/presence_requirement.h"
 #include "extensions/presence/site_presence.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 namespace {
 
@@ -85,4 +85,4 @@ class PresenceGroup final : public CoverageGroup {
 
 std::unique_ptr<CoverageGroup> makePresence() { return std::make_unique<PresenceGroup>(); }
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -8,11 +8,11 @@
 #include "cli/coverage_group.h"
 #include "cli/objective_extension.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 /// Makes the option of `coverage`, and its requirements "presence:95%".
 std::unique_ptr<CoverageGroup> makePresence();
 /// Makes the option of `arrange`.
 std::unique_ptr<ObjectiveGroup> makePresenceObjective();
 
-}  // namespace ispace
+}  // namespace ispace::presence

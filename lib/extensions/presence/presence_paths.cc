@@ -20,7 +20,7 @@
 #include "sim/world.h"
 #include "site/storey_people.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 namespace {
 
@@ -135,4 +135,4 @@ PeoplePaths readPaths(const RoomPaths& ways, const Scene& scene) {
     return ways.isEmpty() ? PeoplePaths() : readPaths(ways.choice, scene, ways.seed);
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -15,7 +15,7 @@
 #include "sim/sim_time.h"
 #include "site/site_scene.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 /// The ways of people that `--presence` counts.
 struct PathsChoice {
@@ -54,4 +54,4 @@ std::vector<RoomPaths> waysIn(const SiteInput& site, const std::string& option,
 /// Cuts the ways in a room into pieces.
 PeoplePaths readPaths(const RoomPaths& ways, const Scene& scene);
 
-}  // namespace ispace
+}  // namespace ispace::presence

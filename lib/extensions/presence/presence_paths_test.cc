@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::presence {
 namespace {
 
 TEST(Paths, AreReadFromAFolderOrWandered) {
@@ -47,4 +47,4 @@ TEST(Paths, OfWanderersFillTheRoom) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::presence

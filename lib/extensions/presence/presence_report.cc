@@ -7,7 +7,7 @@
 #include "base/number.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 namespace {
 
@@ -79,4 +79,4 @@ PageAdditions PresenceSection::page(const PageSubject& subject) const {
     return added;
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -7,7 +7,7 @@
 #include "extensions/presence/presence.h"
 #include "report/report_section.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 /// The share of people's ways that sensors of motion detect: member `presence`, a table each of
 /// people and sensors.
@@ -24,4 +24,4 @@ class PresenceSection final : public ReportSection {
     const Presence& presence_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -8,7 +8,7 @@
 #include "base/message.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 namespace {
 
@@ -82,4 +82,4 @@ Verdict checkRequirement(const PresenceRequirement& requirement, const Presence&
             0, figures.share - requirement.share};
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

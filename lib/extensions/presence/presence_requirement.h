@@ -8,7 +8,7 @@
 #include "coverage/requirement.h"
 #include "extensions/presence/presence.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 /// A required presence: `presence:95%` of the ways of all people, or `presence:ID=95%` of those of
 /// one.
@@ -32,4 +32,4 @@ std::string requirementPhrase(const PresenceRequirement& requirement);
 /// \throws UsageError for a person who is not among the people, with the nearest id
 Verdict checkRequirement(const PresenceRequirement& requirement, const Presence& presence);
 
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::presence {
 namespace {
 
 Presence someone() {
@@ -64,4 +64,4 @@ TEST(PresenceRequirement, NamesPeopleInsteadOfAnUnknownOne) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -8,7 +8,7 @@
 
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::presence {
 namespace {
 
 constexpr const char* kRoom = "ispace size=8,6\n";
@@ -82,4 +82,4 @@ TEST(Presence, WithoutAWayIsNone) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::presence

@@ -16,7 +16,7 @@
 #include "site/site_coverage.h"
 #include "support/test_arrange_building.h"
 
-namespace ispace {
+namespace ispace::presence {
 namespace {
 
 SiteScene twoStoreys(const std::string& more = "") {
@@ -165,4 +165,4 @@ TEST(BuildingPresence, SumsAreOfAllWays) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::presence

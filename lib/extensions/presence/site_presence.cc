@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-namespace ispace {
+namespace ispace::presence {
 
 namespace {
 
@@ -53,4 +53,4 @@ Presence sumOverStoreys(std::span<const Presence> storeys) {
     return sum;
 }
 
-}  // namespace ispace
+}  // namespace ispace::presence

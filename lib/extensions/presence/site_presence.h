@@ -6,7 +6,7 @@
 #include "extensions/presence/presence.h"
 #include "site/site_scene.h"
 
-namespace ispace {
+namespace ispace::presence {
 
 /// Puts the storey before the ids of sensors. \param of_people also before those of people: they
 /// are others on each storey
@@ -16,4 +16,4 @@ void nameWholly(const Storey& storey, bool of_people, Presence& presence);
 /// are one. \pre ids of sensors name their storeys
 Presence sumOverStoreys(std::span<const Presence> storeys);
 
-}  // namespace ispace
+}  // namespace ispace::presence

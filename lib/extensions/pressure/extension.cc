@@ -11,11 +11,11 @@ Extension pressure() {
     return {.name = "pressure",
             .add =
                 [] {
-                    addSceneSchemas(pressureSchemas());
-                    addPressureChecks();
+                    addSceneSchemas(pressure::pressureSchemas());
+                    pressure::addPressureChecks();
                 },
-            .options = {{"scan", makePressureOptions}},
-            .role = makePressure};
+            .options = {{"scan", pressure::makePressureOptions}},
+            .role = pressure::makePressure};
 }
 
 }  // namespace ispace::extension

@@ -11,7 +11,7 @@
 #include "scene/bodies.h"
 #include "scene/robot.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 namespace {
 
@@ -235,4 +235,4 @@ PressureReading PressureField::read(const PressureSeat& seat, std::int64_t numbe
     return reading;
 }
 
-}  // namespace ispace
+}  // namespace ispace::pressure

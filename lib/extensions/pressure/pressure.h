@@ -16,7 +16,7 @@
 #include "scene/bodies.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 /// A disc on the floor that bears a weight evenly: a foot, or a wheel.
 struct FootContact {
@@ -96,4 +96,4 @@ class PressureField {
     std::map<std::string, double> on_seats_;  // kg by seat
 };
 
-}  // namespace ispace
+}  // namespace ispace::pressure

@@ -17,7 +17,7 @@
 #include "scene/findings/findings.h"
 #include "scene/sensor/sensor_keys.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 namespace {
 
@@ -270,4 +270,4 @@ PressureScene pressureScene(const Scene& scene, const std::string& prefix, Loads
     return made;
 }
 
-}  // namespace ispace
+}  // namespace ispace::pressure

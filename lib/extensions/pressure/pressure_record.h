@@ -12,7 +12,7 @@
 #include "record/schema.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 /// A rectangle of floor with a grid of cells that each measure a force.
 struct PressureFloor {
@@ -84,4 +84,4 @@ enum class LoadsOf {
 PressureScene pressureScene(const Scene& scene, const std::string& prefix,
                             LoadsOf movers = LoadsOf::ItsOwn);
 
-}  // namespace ispace
+}  // namespace ispace::pressure

@@ -17,7 +17,7 @@
 #include "base/number.h"
 #include "server/role_answer.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 namespace {
 
@@ -268,4 +268,4 @@ std::unique_ptr<RoleService> makePressure(std::span<const RunRoom> rooms, std::u
     return std::make_unique<Floors>(std::move(run));
 }
 
-}  // namespace ispace
+}  // namespace ispace::pressure

@@ -8,7 +8,7 @@
 #include "extensions/pressure/pressure.h"
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 /// Makes the role FLOOR of a run that has floors or seats which feel weights; null without any.
 ///
@@ -18,4 +18,4 @@ namespace ispace {
 /// \throws FormatError as pressureScene()
 std::unique_ptr<RoleService> makePressure(std::span<const RunRoom> rooms, std::uint64_t seed);
 
-}  // namespace ispace
+}  // namespace ispace::pressure

@@ -14,7 +14,7 @@
 #include "cli/operands.h"
 #include "extensions/pressure/pressure.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 namespace {
 
@@ -86,4 +86,4 @@ class PressureOptions : public OptionGroup {
 
 std::unique_ptr<OptionGroup> makePressureOptions() { return std::make_unique<PressureOptions>(); }
 
-}  // namespace ispace
+}  // namespace ispace::pressure

@@ -5,10 +5,10 @@
 
 #include "cli/option_group.h"
 
-namespace ispace {
+namespace ispace::pressure {
 
 /// Makes the option --floor of scan: readings of floors and seats with robots and people at their
 /// starts, a line of JSON each.
 std::unique_ptr<OptionGroup> makePressureOptions();
 
-}  // namespace ispace
+}  // namespace ispace::pressure

@@ -15,7 +15,7 @@
 #include "scene/placement_schemas.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::pressure {
 namespace {
 
 using std::chrono::milliseconds;
@@ -309,4 +309,4 @@ TEST(Pressure, IsNoneWithoutSensors) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::pressure

@@ -5,7 +5,7 @@
 namespace ispace::extension {
 
 Extension projection() {
-    return {.name = "projection", .options = {{"coverage", makeProjectionOptions}}};
+    return {.name = "projection", .options = {{"coverage", projection::makeProjectionOptions}}};
 }
 
 }  // namespace ispace::extension

@@ -16,7 +16,7 @@
 #include "extensions/projection/projection_report.h"
 #include "extensions/projection/projector_coverage.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::unique_ptr<OptionGroup> makeProjectionOptions() {
     return std::make_unique<ProjectionOptions>();
 }
 
-}  // namespace ispace
+}  // namespace ispace::projection

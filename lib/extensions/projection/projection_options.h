@@ -5,9 +5,9 @@
 
 #include "cli/option_group.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 /// Returns the options of `coverage --projection PIXELS`.
 std::unique_ptr<OptionGroup> makeProjectionOptions();
 
-}  // namespace ispace
+}  // namespace ispace::projection

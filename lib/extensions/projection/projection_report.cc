@@ -14,7 +14,7 @@
 #include "drawing/color.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 namespace {
 
@@ -297,4 +297,4 @@ Picture projectionPicture(const ProjectionReport& projection, const std::string&
     return picture;
 }
 
-}  // namespace ispace
+}  // namespace ispace::projection

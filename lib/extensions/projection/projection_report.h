@@ -6,7 +6,7 @@
 #include "drawing/drawing.h"
 #include "extensions/projection/projector_coverage.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 /// Returns the figures as aligned lines: a table for each projector, and one of all surfaces.
 std::string projectionText(const ProjectionReport& projection);
@@ -20,4 +20,4 @@ std::string projectionJson(const ProjectionReport& projection);
 /// that cannot be drawn
 Picture projectionPicture(const ProjectionReport& projection, const std::string& title, int width);
 
-}  // namespace ispace
+}  // namespace ispace::projection

@@ -15,7 +15,7 @@
 #include "extensions/projection/projection_report.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::projection {
 namespace {
 
 // 8 x 6 x 3 m; the projector is five metres before the wall at x = 4 and shows 1000 x 500 pixels
@@ -305,4 +305,4 @@ TEST(Projection, ReportsSurfacesOfModels) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::projection

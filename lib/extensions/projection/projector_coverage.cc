@@ -17,7 +17,7 @@
 #include "trace/moving_bodies.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 namespace {
 
@@ -561,4 +561,4 @@ ProjectionReport projectionOf(const Scene& scene, double density, double cell) {
     return out;
 }
 
-}  // namespace ispace
+}  // namespace ispace::projection

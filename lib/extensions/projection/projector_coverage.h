@@ -15,7 +15,7 @@
 #include "record/record.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 /// Pixels a metre of a picture at a point of a surface: its densities across the direction in which
 /// pixels are widest, and across the one in which they are narrowest.
@@ -125,4 +125,4 @@ struct CellRectangle {
 /// Returns the first of the largest ones, row by row; of size 0 if no cell is true. O(cells)
 CellRectangle largestRectangle(const std::vector<char>& cells, std::size_t columns);
 
-}  // namespace ispace
+}  // namespace ispace::projection

@@ -17,7 +17,7 @@
 #include "env/body.h"
 #include "env/mesh.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 namespace {
 
@@ -202,4 +202,4 @@ std::vector<ProjectionSurface> projectionSurfaces(const Environment& environment
     return surfaces;
 }
 
-}  // namespace ispace
+}  // namespace ispace::projection

@@ -9,7 +9,7 @@
 #include "geom/point.h"
 #include "geom/pose.h"
 
-namespace ispace {
+namespace ispace::projection {
 
 /// A flat part of a surface, as seen from its front, and square cells over its bounds.
 ///
@@ -61,4 +61,4 @@ std::vector<ProjectionSurface> projectionSurfaces(const Environment& environment
 
 constexpr double kMostProjectionCells = 1e8;
 
-}  // namespace ispace
+}  // namespace ispace::projection

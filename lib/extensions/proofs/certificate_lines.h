@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 constexpr std::string_view kCertificateMagic = "#certificate 1";
 
@@ -51,4 +51,4 @@ class CertificateLines {
     int number_ = 0;
 };
 
-}  // namespace ispace
+}  // namespace ispace::proofs

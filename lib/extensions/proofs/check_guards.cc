@@ -10,7 +10,7 @@
 
 #include "extensions/proofs/guard_cones.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -337,4 +337,4 @@ GuardCheck checkGuards(std::span<const Region> floor, std::span<const Point2> gu
     return GuardChecker(floor, certificate, name).check(guards);
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -9,7 +9,7 @@
 
 #include "extensions/proofs/gallery/guard_certificate.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 struct GuardCheck {
     /// No fewer points see the floor; valid whatever the weights are. 0 for trees that prove less
@@ -34,4 +34,4 @@ struct GuardCheck {
 GuardCheck checkGuards(std::span<const Region> floor, std::span<const Point2> guards,
                        const GuardCertificate& certificate, const std::string& name);
 
-}  // namespace ispace
+}  // namespace ispace::proofs

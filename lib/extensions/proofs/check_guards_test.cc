@@ -13,7 +13,7 @@
 #include "extensions/proofs/gallery/gallery.h"
 #include "extensions/proofs/test_pose_floors.h"
 
-namespace ispace {
+namespace ispace::proofs {
 namespace {
 
 constexpr std::int64_t kUnit = GuardCertificate::kUnit;
@@ -282,4 +282,4 @@ TEST(CheckGuards, TextSurvivesWritingAndReading) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::proofs

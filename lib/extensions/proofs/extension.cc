@@ -6,7 +6,7 @@ namespace ispace::extension {
 
 Extension proofs() {
     return {
-        .name = "proofs", .options = {{"arrange", makeCertificateCheck}}, .proof = makePosesProof};
+        .name = "proofs", .options = {{"arrange", proofs::makeCertificateCheck}}, .proof = proofs::makePosesProof};
 }
 
 }  // namespace ispace::extension

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "geom/predicates.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -142,4 +142,4 @@ double GuardFloor::missedBy(const GuardCones& cones) const {
     return missed;
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

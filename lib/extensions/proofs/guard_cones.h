@@ -13,7 +13,7 @@
 #include "extensions/proofs/poses/box_sides.h"
 #include "extensions/proofs/poses/outer_bound.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 /// The part of a triangle that an apex sees, between the lines through two points.
 struct GuardCone {
@@ -59,4 +59,4 @@ class GuardFloor {
     double extent_ = 1;
 };
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -9,7 +9,7 @@
 #include "geom/spatial_index.h"
 #include "geom/tolerance.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -132,4 +132,4 @@ std::string whyNotOpaque(const Level& level, const std::vector<Region>& floor) {
     return "";
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -8,7 +8,7 @@
 #include "env/level.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 /// Why sight on a level differs from sight within the outlines of its free floor; empty if the two
 /// agree: the proofs take each edge of the floor as opaque, and see through all else.
@@ -17,4 +17,4 @@ namespace ispace {
 /// is allowed: a line of sight that leaves through it does not come back. O(n log n)
 std::string whyNotOpaque(const Level& level, const std::vector<Region>& floor);
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -24,7 +24,7 @@
 #include "geom/predicates.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -499,4 +499,4 @@ CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int tim
     return checked;
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

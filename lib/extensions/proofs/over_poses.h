@@ -18,6 +18,10 @@
 #include "scene/scene.h"
 
 namespace ispace {
+class CoverageModel;
+}
+
+namespace ispace::proofs {
 
 /// The word of --proof.
 constexpr std::string_view kOverPoses = "poses";
@@ -88,8 +92,6 @@ Arrangement arrangeOverPoses(const Scene& scene, const std::vector<SensorGroup>&
 GuardCheck checkGuarded(const Scene& scene, const GuardCertificate& certificate,
                         const std::string& name);
 
-class CoverageModel;
-
 /// Gap at which a bound of coverage over all poses is close enough, unless another is given.
 constexpr double kPosesGap = 0.005;
 
@@ -124,4 +126,4 @@ struct CheckedPoses {
 CheckedPoses checkPoses(const Scene& scene, const FloorWeights& weights, int times,
                         const PoseCertificate& certificate, const std::string& name);
 
-}  // namespace ispace
+}  // namespace ispace::proofs

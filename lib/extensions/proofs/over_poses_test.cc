@@ -19,7 +19,7 @@
 #include "support/test_problems.h"
 #include "support/test_results.h"
 
-namespace ispace {
+namespace ispace::proofs {
 namespace {
 
 const FewestProof* fewestOf(const Arrangement& found) {
@@ -435,4 +435,4 @@ TEST(OverPoses, RefusesSensorsThatItCannotBound) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "extensions/proofs/over_poses.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -67,4 +67,4 @@ class PosesProof : public ProofGroup {
 
 std::unique_ptr<ProofGroup> makePosesProof() { return std::make_unique<PosesProof>(); }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -6,7 +6,7 @@
 #include "cli/option_group.h"
 #include "cli/proof_extension.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 /// Returns the options of `arrange --proof poses`.
 std::unique_ptr<ProofGroup> makePosesProof();
@@ -14,4 +14,4 @@ std::unique_ptr<ProofGroup> makePosesProof();
 /// Returns the options of `arrange --verify FILE`.
 std::unique_ptr<OptionGroup> makeCertificateCheck();
 
-}  // namespace ispace
+}  // namespace ispace::proofs

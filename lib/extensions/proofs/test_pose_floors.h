@@ -11,7 +11,7 @@
 #include "geom/pose.h"
 #include "geom/visibility/visibility.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 /// Two rooms with a door of 1 m between them, and a pillar in the second.
 inline Region roomsWithPillar() {
@@ -68,4 +68,4 @@ class SeenAreas {
     VisibilityMap map_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -19,7 +19,7 @@
 #include "extensions/proofs/proof_options.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -159,4 +159,4 @@ class VerifyOptions : public OptionGroup {
 
 std::unique_ptr<OptionGroup> makeCertificateCheck() { return std::make_unique<VerifyOptions>(); }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -10,10 +10,10 @@ Extension radios() {
     return {.name = "radios",
             .add =
                 [] {
-                    addSceneSchemas(radioSchemas());
-                    addRadios();
+                    addSceneSchemas(radios::radioSchemas());
+                    radios::addRadios();
                 },
-            .role = makeRadios};
+            .role = radios::makeRadios};
 }
 
 }  // namespace ispace::extension

@@ -20,7 +20,7 @@
 #include "scene/thing_kind.h"
 #include "sense/walls_between.h"
 
-namespace ispace {
+namespace ispace::radios {
 
 namespace {
 
@@ -209,4 +209,4 @@ void addRadios() {
     });
 }
 
-}  // namespace ispace
+}  // namespace ispace::radios

@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::radios {
 
 /// A `radio` record: it sends messages, and receives those of its kind and channel.
 struct Radio {
@@ -58,4 +58,4 @@ std::vector<Schema> radioSchemas();
 /// Adds the kind of radios, for the program.
 void addRadios();
 
-}  // namespace ispace
+}  // namespace ispace::radios

@@ -20,7 +20,7 @@
 #include "server/role_answer.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::radios {
 
 namespace {
 
@@ -253,4 +253,4 @@ std::unique_ptr<RoleService> makeRadios(std::span<const RunRoom> rooms, std::uin
     return std::make_unique<Radios>(std::move(run));
 }
 
-}  // namespace ispace
+}  // namespace ispace::radios

@@ -7,7 +7,7 @@
 
 #include "server/client_role.h"
 
-namespace ispace {
+namespace ispace::radios {
 
 /// Makes the role RADIO of a run that has radios; null without any.
 ///
@@ -20,4 +20,4 @@ namespace ispace {
 /// \throws FormatError as radioCarrier()
 std::unique_ptr<RoleService> makeRadios(std::span<const RunRoom> rooms, std::uint64_t seed);
 
-}  // namespace ispace
+}  // namespace ispace::radios

@@ -20,7 +20,7 @@
 #include "server/session.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::radios {
 namespace {
 
 using std::chrono::milliseconds;
@@ -257,4 +257,4 @@ TEST(RadioService, IsForRadios) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::radios

@@ -9,7 +9,7 @@
 
 #include "extensions/reality/beam_model.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -235,4 +235,4 @@ Alignment align(LoggedRun& run, const RayScenes& worlds) {
     return alignment;
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

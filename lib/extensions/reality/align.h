@@ -7,7 +7,7 @@
 
 #include "extensions/reality/compare.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// Corrections of poses: of the whole log, and then of each scan (of each sensor that stands still,
 /// from all its scans). A scan that too few beams support keeps its pose.
@@ -26,4 +26,4 @@ struct Alignment {
 /// \pre simulate() prepared the worlds for the run
 Alignment align(LoggedRun& run, const RayScenes& worlds);
 
-}  // namespace ispace
+}  // namespace ispace::reality

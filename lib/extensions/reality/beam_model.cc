@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -384,4 +384,4 @@ RobustSpread robustSpread(std::vector<double>& values) {
     return spread;
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

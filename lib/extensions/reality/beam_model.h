@@ -13,7 +13,7 @@
 
 #include "extensions/reality/compare.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// One measured range z beside the simulated one z*.
 struct BeamSample {
@@ -86,4 +86,4 @@ struct RobustSpread {
 /// Overwrites the values. All 0 for an empty list.
 RobustSpread robustSpread(std::vector<double>& values);
 
-}  // namespace ispace
+}  // namespace ispace::reality

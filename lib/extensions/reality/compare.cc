@@ -16,7 +16,7 @@
 #include "sense/burial.h"
 #include "sense/selection.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -380,4 +380,4 @@ void simulate(LoggedRun& run, RayScenes& worlds, SurfaceFinder& surfaces) {
                              " scans were taken inside something solid of the plan");
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -15,7 +15,7 @@
 #include "scene/scene.h"
 #include "trace/ray_world.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// The rays of a scan in the world.
 struct MeasuredRays {
@@ -113,4 +113,4 @@ void simulate(LoggedRun& run, RayScenes& worlds, SurfaceFinder& surfaces);
 void castMeasured(const RayScenes& worlds, const LoggedRun& run, const MeasuredScan& scan,
                   const Pose3& pose, std::span<float> expected, std::span<float> cosines);
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension reality() { return {.name = "reality", .options = {{"scan", makeRealityOptions}}}; }
+Extension reality() { return {.name = "reality", .options = {{"scan", reality::makeRealityOptions}}}; }
 
 }  // namespace ispace::extension

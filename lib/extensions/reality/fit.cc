@@ -13,7 +13,7 @@
 #include "scene/placement_schemas.h"
 #include "sense/ultrasound_burst.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -632,4 +632,4 @@ std::string fittedLayout(const std::vector<SensorFit>& sensors,
     return writeRecordText(document) + comments;
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

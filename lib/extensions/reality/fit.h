@@ -12,7 +12,7 @@
 #include "record/record.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// Losses that grow with the angle of incidence: the share `dropout` everywhere, and from
 /// `graze_from` to `graze_to` more, to all.
@@ -70,4 +70,4 @@ std::string fittedLayout(const std::vector<SensorFit>& sensors,
                          const std::optional<OdometryFit>& odometry, const LoggedRun& run,
                          const Scene& scene, const std::string& history_line);
 
-}  // namespace ispace
+}  // namespace ispace::reality

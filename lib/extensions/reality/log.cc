@@ -15,7 +15,7 @@
 #include "extensions/reality/log_parts.h"
 #include "scene/run/run_reader.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -420,4 +420,4 @@ Log readLog(const std::string& operand, LogPictures pictures) {
     return parseLog(operand == "-" ? readStdin() : readAll(operand), operand, pictures);
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

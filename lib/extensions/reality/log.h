@@ -16,7 +16,7 @@
 
 #include "geom/pose.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// The poses that a log has for one measurement. That of a sensor which stands still during the
 /// whole log is left out, as it is the unknown of a calibration.
@@ -120,4 +120,4 @@ Log readScanLines(std::string_view bytes, const std::string& name,
 Log readMcapLog(std::string_view bytes, const std::string& name,
                 LogPictures pictures = LogPictures::Skip);
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "extensions/reality/log_parts.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -252,4 +252,4 @@ Log readCarmenLog(std::string_view bytes, const std::string& name) {
     return CarmenReader(bytes, name).read();
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -12,7 +12,7 @@
 #include "extensions/reality/log_parts.h"
 #include "extensions/reality/mcap_messages.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -236,4 +236,4 @@ void addMcap(std::string_view bytes, const std::string& name, RosLogBuilder& bui
     });
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "extensions/reality/log.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// Counts the ranges and points that a reader stores. \throws FormatError above kMaxLogValues
 class LogBudget {
@@ -61,4 +61,4 @@ void addSqliteBag(const std::string& file, RosLogBuilder& builder);
 std::string unpackedChunk(std::string_view compression, std::string_view packed,
                           std::uint64_t size);
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -13,7 +13,7 @@
 #include "geom/rotation.h"
 #include "sense/formats/cdr.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -454,4 +454,4 @@ Log RosLogBuilder::finish() {
     return log;
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "extensions/reality/log_parts.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -79,4 +79,4 @@ void addSqliteBag(const std::string& file, RosLogBuilder& builder) {
     SqliteBag(file).read(builder);
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

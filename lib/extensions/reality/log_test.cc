@@ -15,7 +15,7 @@
 #include "sense/formats/ros_messages.h"
 #include "support/test_folder.h"
 
-namespace ispace {
+namespace ispace::reality {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
@@ -401,4 +401,4 @@ TEST(Logs, Csail) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::reality

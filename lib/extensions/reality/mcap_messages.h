@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace ispace {
+namespace ispace::reality {
 
 /// A message of an MCAP file, in CDR.
 struct McapMessage {
@@ -26,4 +26,4 @@ bool isMcap(std::string_view bytes);
 /// byte
 void readMcap(std::string_view bytes, const std::string& name, const McapUse& use);
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -12,7 +12,7 @@
 #include "base/number.h"
 #include "extensions/reality/beam_model.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -355,4 +355,4 @@ std::vector<std::string> recordsOf(const PlanErrors& errors, const Environment& 
     return lines;
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

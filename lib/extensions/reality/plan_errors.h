@@ -8,7 +8,7 @@
 
 #include "extensions/reality/compare.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// Cells beside each other where the plan and the log differ.
 struct PlanError {
@@ -66,4 +66,4 @@ PlanErrors findPlanErrors(const LoggedRun& run, double sigma, double cell = 0.1)
 /// that is gone as a whole the option of envc that deletes it, or moves it if it stands elsewhere.
 std::vector<std::string> recordsOf(const PlanErrors& errors, const Environment& environment);
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -12,7 +12,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/sensor_spec.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -170,4 +170,4 @@ class RealityOptions final : public OptionGroup {
 
 std::unique_ptr<OptionGroup> makeRealityOptions() { return std::make_unique<RealityOptions>(); }
 
-}  // namespace ispace
+}  // namespace ispace::reality

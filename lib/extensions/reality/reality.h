@@ -5,9 +5,9 @@
 
 #include "cli/option_group.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// The options --against, --align, --json, --require, --report and --fit of scan.
 std::unique_ptr<OptionGroup> makeRealityOptions();
 
-}  // namespace ispace
+}  // namespace ispace::reality

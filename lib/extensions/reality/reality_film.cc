@@ -10,7 +10,7 @@
 #include "env/level.h"
 #include "extensions/reality/reality_report.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -116,4 +116,4 @@ std::string realityFilm(const RealityReport& report, const LoggedRun& run,
     return bytes + film.end();
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -9,7 +9,7 @@
 #include "extensions/reality/reality_report.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -203,4 +203,4 @@ ReportPage realityPage(const RealityReport& report, const LoggedRun& run,
     return page;
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

@@ -13,7 +13,7 @@
 #include "env/level.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 namespace {
 
@@ -469,4 +469,4 @@ std::vector<std::string> unmetRequirements(const RealityReport& report,
     return unmet;
 }
 
-}  // namespace ispace
+}  // namespace ispace::reality

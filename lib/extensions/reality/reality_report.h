@@ -13,7 +13,7 @@
 #include "extensions/reality/plan_errors.h"
 #include "report/page/page.h"
 
-namespace ispace {
+namespace ispace::reality {
 
 /// Residuals of the beams of one group that return in the log and in the simulation.
 struct ResidualRow {
@@ -82,4 +82,4 @@ RealityRequirement parseRealityRequirement(const std::string& text);
 std::vector<std::string> unmetRequirements(const RealityReport& report,
                                            const std::vector<RealityRequirement>& requirements);
 
-}  // namespace ispace
+}  // namespace ispace::reality

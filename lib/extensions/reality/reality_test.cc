@@ -18,7 +18,7 @@
 #include "support/test_folder.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::reality {
 namespace {
 
 const std::string kRoom =
@@ -558,4 +558,4 @@ TEST(Reality, OnCsailTheRoomOfTheEvenScansHoldsForTheOddOnes) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::reality

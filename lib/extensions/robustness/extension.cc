@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension robustness() { return {.name = "robustness", .coverage = makeRobustness}; }
+Extension robustness() { return {.name = "robustness", .coverage = robustness::makeRobustness}; }
 
 }  // namespace ispace::extension

@@ -17,7 +17,7 @@
 #include "extensions/robustness/site_robustness.h"
 #include "site/storey_people.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 namespace {
 
@@ -150,4 +150,4 @@ class RobustnessGroup final : public CoverageGroup {
 
 std::unique_ptr<CoverageGroup> makeRobustness() { return std::make_unique<RobustnessGroup>(); }
 
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -7,9 +7,9 @@
 
 #include "cli/coverage_group.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 /// Makes the options of `coverage`.
 std::unique_ptr<CoverageGroup> makeRobustness();
 
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -7,7 +7,7 @@
 #include "base/number.h"
 #include "report/coverage_report.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 namespace {
 
@@ -257,4 +257,4 @@ PageAdditions RobustnessSection::page(const PageSubject& subject) const {
     return added;
 }
 
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -9,7 +9,7 @@
 #include "coverage/robustness.h"
 #include "report/report_section.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 /// Coverage under errors of mounting, failures and among people, as far as it was requested.
 struct Robustness {
@@ -54,4 +54,4 @@ std::vector<std::vector<std::string>> failureRows(const Robustness& robustness);
 /// any failure", "90% is not met without l2", "90% is met by 80 of 100 crowds".
 std::vector<std::string> robustRequirements(const Robustness& robustness);
 
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace ispace {
+namespace ispace::robustness {
 namespace {
 
 TEST(RobustnessReport, ACrowdOfOneMomentHasNoQuantiles) {
@@ -25,4 +25,4 @@ TEST(RobustnessReport, ACrowdOfOneMomentHasNoQuantiles) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::robustness

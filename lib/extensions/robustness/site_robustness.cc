@@ -9,7 +9,7 @@
 
 #include "site/storey_people.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 namespace {
 
@@ -94,4 +94,4 @@ std::vector<FigureLoss> worstFailuresOfSite(const SiteCoverage& coverage, int co
     return worstFailures(rooms, sumOfStoreys(coverage), count, requirements);
 }
 
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -12,7 +12,7 @@
 #include "coverage/robustness.h"
 #include "site/site_coverage.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 /// People on each storey at the same time.
 using SiteCrowd = std::vector<Crowd>;
@@ -32,4 +32,4 @@ SampledFigures crowdSite(const SiteScene& building, const SiteCoverage& planned,
 std::vector<FigureLoss> worstFailuresOfSite(const SiteCoverage& coverage, int count,
                                             std::span<const Requirement> requirements);
 
-}  // namespace ispace
+}  // namespace ispace::robustness

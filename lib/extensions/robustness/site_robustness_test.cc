@@ -10,7 +10,7 @@
 #include "site/coupling.h"
 #include "site/storey_people.h"
 
-namespace ispace {
+namespace ispace::robustness {
 namespace {
 
 SiteScene sceneOf(const std::string& text) {
@@ -134,4 +134,4 @@ TEST(BuildingRobustness, SumsAreSharesOfAllFloor) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::robustness

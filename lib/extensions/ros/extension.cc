@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension ros() { return {.name = "ros", .bridge = makeRosOptions}; }
+Extension ros() { return {.name = "ros", .bridge = ros::makeRosOptions}; }
 
 }  // namespace ispace::extension

@@ -15,7 +15,7 @@
 #include "extensions/ros/ros_parameters.h"
 #include "extensions/ros/ros_text.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -143,7 +143,7 @@ void FoxgloveDialogue::advertiseServices() {
     sendText(json.take());
 }
 
-WebMessage FoxgloveDialogue::write(std::uint32_t key, const RosFeed::Entry& /*topic*/,
+web::WebMessage FoxgloveDialogue::write(std::uint32_t key, const RosFeed::Entry& /*topic*/,
                                    const RosMessage& message) {
     std::string head = binary(FoxgloveOpcode::Message);
     appendLittle(head, key);
@@ -171,11 +171,11 @@ void FoxgloveDialogue::stepped() {
     if (is_other && !watched_.empty()) sendParameters(watched_, "");
 }
 
-std::optional<WebMessage> FoxgloveDialogue::next() {
+std::optional<web::WebMessage> FoxgloveDialogue::next() {
     if (hasAnswers() || !std::exchange(is_time_due_, false)) return RosDialogue::next();
     std::string head = binary(FoxgloveOpcode::Time);
     appendLittle(head, rosTimeOf(state().simulation().world().time()));
-    return WebMessage{.head = std::move(head), .is_text = false};
+    return web::WebMessage{.head = std::move(head), .is_text = false};
 }
 
 // Requests.
@@ -456,4 +456,4 @@ void FoxgloveDialogue::fetchAsset(const Json& request) {
     });
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -12,7 +12,7 @@
 
 #include "extensions/ros/ros_dialogue.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Bytes at the beginning of a server's binary messages.
 enum class FoxgloveOpcode : std::uint8_t { Message = 1, Time = 2, Response = 3, Asset = 4 };
@@ -29,7 +29,7 @@ class FoxgloveDialogue final : public RosDialogue {
 
     void receive(std::string_view message, bool is_text) override;
     void stepped() override;
-    std::optional<WebMessage> next() override;
+    std::optional<web::WebMessage> next() override;
 
   private:
     using Json = nlohmann::json;
@@ -50,7 +50,7 @@ class FoxgloveDialogue final : public RosDialogue {
         }
     };
 
-    WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
+    web::WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
                      const RosMessage& message) override;
     void tell(Level level, const std::string& text) override;
     void topicsChanged() override {
@@ -93,4 +93,4 @@ class FoxgloveDialogue final : public RosDialogue {
     std::shared_ptr<FoxgloveDialogue*> self_ = std::make_shared<FoxgloveDialogue*>(this);
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -9,7 +9,7 @@
 #include "extensions/ros/ros_text.h"
 #include "support/ros_talk.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 using nlohmann::json;
@@ -434,4 +434,4 @@ TEST(Foxglove, ChannelsComeAndGoWithTheWorld) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -3,7 +3,7 @@
 
 #include "extensions/ros/ros_source.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -45,4 +45,4 @@ class LiftTopics final : public RosSource {
 
 std::shared_ptr<RosSource> liftTopics() { return std::make_shared<LiftTopics>(); }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -10,7 +10,7 @@
 #include "server/server.h"
 #include "server/server_state.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -262,4 +262,4 @@ class RmfTopics final : public RosSource {
 
 std::shared_ptr<RosSource> rmfTopics() { return std::make_shared<RmfTopics>(); }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "sense/formats/cdr.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -249,4 +249,4 @@ void RosActions::stepped() {
             if (isUnderWay(goal.status) && now - goal.told >= kPeriod) sendFeedback(action, goal);
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -14,7 +14,7 @@
 #include "extensions/ros/ros_orders.h"
 #include "extensions/ros/ros_server.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Nav2's action `navigate_to_pose` of each robot over DDS: three services, the topics of feedback
 /// and status. A goal is one of the robot's topic `goal_pose`.
@@ -72,4 +72,4 @@ class RosActions {
     std::shared_ptr<RosActions*> self_ = std::make_shared<RosActions*>(this);
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

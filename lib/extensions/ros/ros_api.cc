@@ -11,7 +11,7 @@
 #include "extensions/ros/ros_dialogue.h"
 #include "extensions/ros/ros_parameters.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -294,4 +294,4 @@ std::optional<std::string> rosApi(const RosFeed& feed, const Simulation& simulat
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -8,7 +8,7 @@
 
 #include "extensions/ros/ros_feed.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Answers a service of the node rosapi, by which clients of rosbridge look around.
 /// \param name without a leading slash: "rosapi/topics" \returns the values of the answer as JSON;
@@ -16,4 +16,4 @@ namespace ispace {
 std::optional<std::string> rosApi(const RosFeed& feed, const Simulation& simulation,
                                   std::string_view name, const nlohmann::json& arguments);
 
-}  // namespace ispace
+}  // namespace ispace::ros

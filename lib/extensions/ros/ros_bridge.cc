@@ -10,7 +10,7 @@
 #include "server/server.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -45,13 +45,13 @@ void RosBridge::join(std::uint32_t domain) {
 }
 
 void RosBridge::stepped() {
-    for (WebServer& web : webs_) web.stepped();
+    for (web::WebServer& web : webs_) web.stepped();
     if (node_) node_->stepped();
     if (log_) log_->stepped();
 }
 
 void RosBridge::serve(bool has_made) {
-    for (WebServer& web : webs_) web.serve(has_made);
+    for (web::WebServer& web : webs_) web.serve(has_made);
     if (node_) {
         if (has_made) node_->stepped();
         node_->serve();
@@ -62,12 +62,12 @@ void RosBridge::serve(bool has_made) {
 bool RosBridge::waitsToChange() const {
     return (node_ && node_->waitsToChange()) ||
            std::any_of(webs_.begin(), webs_.end(),
-                       [](const WebServer& web) { return web.waitsToChange(); });
+                       [](const web::WebServer& web) { return web.waitsToChange(); });
 }
 
 std::optional<WallTime> RosBridge::awaitedSince(WallTime earliest) const {
     std::optional<WallTime> latest;
-    for (const WebServer& web : webs_)
+    for (const web::WebServer& web : webs_)
         if (const auto since = web.awaitedSince(earliest))
             latest = std::max(latest.value_or(*since), *since);
     return latest;
@@ -78,16 +78,16 @@ std::optional<WallTime> RosBridge::nextTurn() const {
 }
 
 void RosBridge::end() {
-    for (WebServer& web : webs_) web.end();
+    for (web::WebServer& web : webs_) web.end();
     if (node_) node_->end();
 }
 
 bool RosBridge::busy() {
-    return std::any_of(webs_.begin(), webs_.end(), [](WebServer& web) { return web.busy(); });
+    return std::any_of(webs_.begin(), webs_.end(), [](web::WebServer& web) { return web.busy(); });
 }
 
 void RosBridge::closeAll() {
-    for (WebServer& web : webs_) web.closeAll();
+    for (web::WebServer& web : webs_) web.closeAll();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

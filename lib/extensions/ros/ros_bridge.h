@@ -17,7 +17,7 @@
 #include "extensions/web/web_server.h"
 #include "server/bridge.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Carries the running world as topics of ROS 2 to all their clients, which share each message.
 /// Open ports and files before Server::run().
@@ -62,7 +62,7 @@ class RosBridge final : public Bridge {
     RosFeed feed_;  // of all below
     std::optional<RosNode> node_;
     std::optional<RosLog> log_;
-    std::list<WebServer> webs_;
+    std::list<web::WebServer> webs_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -36,15 +36,15 @@ bool RosDialogue::hasRoom() const {
 
 bool RosDialogue::isOverfull() const { return out_bytes_ > kMaxAnswers + largest_; }
 
-void RosDialogue::send(WebMessage message) {
+void RosDialogue::send(web::WebMessage message) {
     out_bytes_ += message.size();
     largest_ = std::max(largest_, message.size());
     out_.push_back(std::move(message));
 }
 
-void RosDialogue::sendParts(std::vector<WebMessage> parts) {
+void RosDialogue::sendParts(std::vector<web::WebMessage> parts) {
     std::size_t size = 0;
-    for (WebMessage& part : parts) {
+    for (web::WebMessage& part : parts) {
         size += part.size();
         send(std::move(part));
     }
@@ -108,9 +108,9 @@ void RosDialogue::dropOldest(Subscription& subscription) {
     queue_.erase(oldest);
 }
 
-std::optional<WebMessage> RosDialogue::next() {
+std::optional<web::WebMessage> RosDialogue::next() {
     if (!out_.empty()) {
-        WebMessage message = std::move(out_.front());
+        web::WebMessage message = std::move(out_.front());
         out_.pop_front();
         out_bytes_ -= message.size();
         return message;
@@ -160,4 +160,4 @@ const RosChannel* RosDialogue::input(std::string_view topic, RosType type) const
     return nullptr;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

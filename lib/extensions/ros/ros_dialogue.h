@@ -17,13 +17,13 @@
 #include "extensions/ros/ros_orders.h"
 #include "extensions/web/web_dialogue.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// A client of topics at a socket, whatever its language: subscriptions, orders, services.
 ///
 /// Output is bounded: a slow reader loses the oldest messages of each subscription, and its
 /// requests wait while it leaves answers unread.
-class RosDialogue : public WebDialogue {
+class RosDialogue : public web::WebDialogue {
   public:
     /// \param peer address of the client
     RosDialogue(ServerState& state, RosFeed& feed, std::string peer);
@@ -38,7 +38,7 @@ class RosDialogue : public WebDialogue {
     void proceed() override { orders_.proceed(); }
     [[nodiscard]] bool waiting() const override { return orders_.waiting(); }
     [[nodiscard]] bool waitsToChange() const override { return orders_.waitsToChange(); }
-    std::optional<WebMessage> next() override;
+    std::optional<web::WebMessage> next() override;
     [[nodiscard]] bool isOverfull() const override;
     [[nodiscard]] bool closing() const override { return false; }
     [[nodiscard]] bool isEngaged() const override {
@@ -64,7 +64,7 @@ class RosDialogue : public WebDialogue {
     enum class Level { Info = 0, Warning = 1, Error = 2 };
 
     /// Writes a message for the client. \param key of the subscription
-    virtual WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
+    virtual web::WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
                              const RosMessage& message) = 0;
     /// Reports a failure that answers no request.
     virtual void tell(Level level, const std::string& text) = 0;
@@ -73,9 +73,9 @@ class RosDialogue : public WebDialogue {
 
     [[nodiscard]] RosFeed& feed() { return *feed_; }
     [[nodiscard]] ServerState& state() { return *state_; }
-    void send(WebMessage message);
+    void send(web::WebMessage message);
     /// Sends the parts of one message.
-    void sendParts(std::vector<WebMessage> parts);
+    void sendParts(std::vector<web::WebMessage> parts);
     void sendText(std::string text) { send({.head = std::move(text)}); }
     /// Replaces an earlier subscription with this key. \returns false if there are too many
     /// \pre no other subscription has the topic
@@ -111,9 +111,9 @@ class RosDialogue : public WebDialogue {
     std::map<std::uint32_t, std::uint32_t> keys_;  // of subscriptions, by topic
     std::list<Queued> queue_;                      // oldest first
     std::size_t queue_bytes_ = 0;
-    std::deque<WebMessage> out_;               // answers, sent before the queue
+    std::deque<web::WebMessage> out_;               // answers, sent before the queue
     std::size_t out_bytes_ = 0, largest_ = 0;  // of one answer so far
     std::int64_t version_;                     // of the feed's topics
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -9,7 +9,7 @@
 #include "extensions/ros/ros_text.h"
 #include "scene/room_state.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -385,4 +385,4 @@ void RosFeed::takeFrame(SensorOfRoom which) {
              }});
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -19,7 +19,7 @@
 #include "server/server_state.h"
 #include "sim/sensor_reading.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// A message of a topic, encoded once for all clients.
 class RosMessage {
@@ -149,4 +149,4 @@ class RosFeed {
     std::shared_ptr<RosFeed*> self_ = std::make_shared<RosFeed*>(this);
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

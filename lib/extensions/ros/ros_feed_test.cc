@@ -16,7 +16,7 @@
 #include "support/test_source.h"
 #include "support/test_world.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 using nlohmann::json;
@@ -448,4 +448,4 @@ TEST(RosFeed, EqualNamesGetNumbers) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

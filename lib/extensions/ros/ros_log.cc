@@ -7,7 +7,7 @@
 
 #include "sense/formats/rosbag.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 constexpr std::uint64_t kEnd = std::numeric_limits<std::uint64_t>::max();
@@ -83,4 +83,4 @@ void RosLog::finish() {
     file_.finish();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -13,7 +13,7 @@
 #include "extensions/ros/ros_feed.h"
 #include "sense/formats/mcap_writer.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Writes all topics of a running world to an MCAP file, as `ros2 bag record` of the same world
 /// would. Topics that a change of the world adds get channels of their own; those beyond the
@@ -58,4 +58,4 @@ class RosLog {
     std::int64_t version_ = -1;       // of the feed's topics
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -13,7 +13,7 @@
 
 #include "support/test_world.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 /// The messages of a file by topic, without its index.
@@ -167,4 +167,4 @@ TEST(RosLog, LeavesTheFeedWithoutSubscriptions) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -14,7 +14,7 @@
 #include "raster/codec.h"
 #include "sense/formats/cdr.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -285,4 +285,4 @@ void RosNode::end() {
     participant_.reset();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

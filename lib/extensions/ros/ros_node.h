@@ -16,7 +16,7 @@
 #include "extensions/ros/ros_orders.h"
 #include "extensions/ros/ros_server.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// The running world as a node of ROS 2, over DDS. Only topics with readers are computed.
 ///
@@ -87,4 +87,4 @@ class RosNode {
     std::shared_ptr<RosNode*> self_ = std::make_shared<RosNode*>(this);
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -18,7 +18,7 @@
 #include "support/fake_participant.h"
 #include "support/test_world.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 /// A world in steps of 0.1 s with a node.
@@ -421,4 +421,4 @@ TEST(RosQueries, SetParametersAtomicallyOneByOne) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -15,7 +15,7 @@
 #include "io/glb/glb_write.h"
 #include "sense/formats/mcap_writer.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -253,4 +253,4 @@ void RosOptions::commit(const CommonOptions& common) {
 
 std::unique_ptr<BridgeGroup> makeRosOptions() { return std::make_unique<RosOptions>(); }
 
-}  // namespace ispace
+}  // namespace ispace::ros

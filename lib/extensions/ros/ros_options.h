@@ -5,9 +5,9 @@
 
 #include "cli/run_bridge.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Returns the options of simrun about topics of ROS: --foxglove, --rosbridge, --ros2, --mcap.
 std::unique_ptr<BridgeGroup> makeRosOptions();
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -14,7 +14,7 @@
 #include "record/schema.h"
 #include "sim/odometry.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -419,4 +419,4 @@ void RosOrders::watch() {
     }
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -18,7 +18,7 @@
 #include "server/server_state.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// A service of the world, of type std_srvs/srv/Empty, and the request that carries it out.
 struct RosService {
@@ -138,4 +138,4 @@ class RosOrders {
     std::string peer_, token_;  // of those that hold robots on their ways
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -16,7 +16,7 @@
 #include "sense/formats/ros_messages.h"
 #include "support/test_world.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 TEST(RosOrders, TellsWhyARequestNeedsAToken) {
@@ -187,4 +187,4 @@ TEST(RosOrders, TellsWhyAGoalIsNone) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

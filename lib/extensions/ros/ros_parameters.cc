@@ -9,7 +9,7 @@
 #include "base/number.h"
 #include "server/server_state.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -68,4 +68,4 @@ RosSetting settingOf(ServerState& state, const std::string& name, const nlohmann
     return {out, ""};
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -7,8 +7,10 @@
 #include <vector>
 
 namespace ispace {
-
 class ServerState;
+}
+
+namespace ispace::ros {
 
 /// A value of the running world by name: `clock.paused`, `clock.rate`, and `ID.at` and
 /// `ID.heading` (metres, degrees) of robots, people, and fixed sensors, with ids across the worlds
@@ -31,4 +33,4 @@ struct RosSetting {
 };
 RosSetting settingOf(ServerState& state, const std::string& name, const nlohmann::json& value);
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -8,7 +8,7 @@
 
 #include "extensions/ros/ros_parameters.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -155,4 +155,4 @@ void writeSetResult(const std::string& refusal, CdrWriter& out) {
     out.put(refusal.empty()).put(refusal);
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -11,8 +11,10 @@
 #include "sense/formats/cdr.h"
 
 namespace ispace {
-
 class ServerState;
+}
+
+namespace ispace::ros {
 
 /// A service of the node that answers at once: those by which nodes list and describe parameters.
 struct RosQuery {
@@ -28,4 +30,4 @@ std::vector<std::pair<std::string, nlohmann::json>> readParameters(CdrReader& re
 /// Writes a rcl_interfaces/msg/SetParametersResult. \param refusal "" if the parameter is set
 void writeSetResult(const std::string& refusal, CdrWriter& out);
 
-}  // namespace ispace
+}  // namespace ispace::ros

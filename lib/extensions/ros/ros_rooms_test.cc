@@ -21,7 +21,7 @@
 #include "support/test_layout.h"
 #include "support/test_source.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 using nlohmann::json;
@@ -447,4 +447,4 @@ TEST(ServedRooms, RequestsToOneRoomThatFollowShareAChange) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

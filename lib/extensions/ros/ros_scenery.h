@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 #include "sense/formats/ros_messages.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 class RosSource;
 
@@ -34,4 +34,4 @@ struct RosScenery {
 /// Returns the topics by which Open-RMF runs lifts, doors and fleets, see ispace-ros(7).
 std::shared_ptr<RosSource> rmfTopics();
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "sense/formats/cdr.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -70,4 +70,4 @@ void RosServer::addEnds(std::vector<DdsGuid>& readers, std::vector<DdsGuid>& wri
     writers.push_back(participant_->guid(writer_));
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -10,7 +10,7 @@
 
 #include "extensions/ros/module/dds_participant.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// The names that nodes of ROS 2 give topics and types in DDS: "/scan" is "rt/scan",
 /// "sensor_msgs/msg/LaserScan" is "sensor_msgs::msg::dds_::LaserScan_".
@@ -48,4 +48,4 @@ class RosServer {
     int reader_, writer_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -11,7 +11,7 @@
 #include "extensions/ros/foxglove_dialogue.h"
 #include "extensions/ros/rosbridge_dialogue.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 bool isLocalOrigin(std::string_view origin) {
     if (origin.empty() || origin == "file://") return true;
@@ -78,7 +78,7 @@ RosSite::RosSite(ServerState& state, RosFeed& feed, RosLanguage language, std::s
 
 void RosSite::settle(const std::string& host, std::uint16_t port) { origin_.emplace(host, port); }
 
-WebAdmission RosSite::open(const WebRequest& request) {
+web::WebAdmission RosSite::open(const web::WebRequest& request) {
     std::string_view protocol;
     const std::string peer(request.peer);
     std::unique_ptr<RosDialogue> dialogue;
@@ -110,4 +110,4 @@ WebAdmission RosSite::open(const WebRequest& request) {
     return {.dialogue = std::move(dialogue), .protocol = protocol};
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -10,7 +10,7 @@
 #include "extensions/web/web_dialogue.h"
 #include "server/server_state.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Protocols that carry topics of ROS over WebSockets.
 enum class RosLanguage { Foxglove, Rosbridge };
@@ -25,7 +25,7 @@ std::optional<std::string> tokenOf(std::string_view target);
 
 /// A port for clients of topics. Pages of other machines, and all clients of a port for other
 /// machines, present the token of the run in the address: ws://127.0.0.1:8765/?token=x.
-class RosSite final : public WebSite {
+class RosSite final : public web::WebSite {
   public:
     /// \param title of the run; the feed outlives the site
     RosSite(ServerState& state, RosFeed& feed, RosLanguage language, std::string title,
@@ -35,7 +35,7 @@ class RosSite final : public WebSite {
     [[nodiscard]] bool isHost(std::string_view host) const override {
         return !is_loopback_ || origin_->isHost(host);
     }
-    WebAdmission open(const WebRequest& request) override;
+    web::WebAdmission open(const web::WebRequest& request) override;
     void stepped() override { feed_->stepped(); }
 
   private:
@@ -44,7 +44,7 @@ class RosSite final : public WebSite {
     RosLanguage language_;
     std::string title_, session_;
     bool is_loopback_;
-    std::optional<WebOrigin> origin_;
+    std::optional<web::WebOrigin> origin_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -5,7 +5,7 @@
 
 #include "support/test_world.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 TEST(RosSite, PagesOfThisMachineAreLocal) {
@@ -31,14 +31,14 @@ TEST(RosSite, TokensComeInTheQuery) {
 
 class RosSites : public ::testing::Test {
   protected:
-    static unsigned open(const ServerLimits& limits, const WebRequest& request,
+    static unsigned open(const ServerLimits& limits, const web::WebRequest& request,
                          bool is_loopback = true, RosLanguage language = RosLanguage::Foxglove) {
         testing::TestWorld room;
         ServerState state(room.simulation, limits);
         RosFeed feed(state, {});
         RosSite site(state, feed, language, "room", is_loopback);
         site.settle("127.0.0.1", 8765);
-        const WebAdmission admission = site.open(request);
+        const web::WebAdmission admission = site.open(request);
         return admission.dialogue ? 101 : admission.status;
     }
     static constexpr const char* kBoth = "foxglove.sdk.v1, foxglove.websocket.v1";
@@ -56,9 +56,9 @@ TEST_F(RosSites, ChooseAProtocol) {
 }
 
 TEST_F(RosSites, OtherPagesNeedTheToken) {
-    const WebRequest stranger{.target = "/", .origin = "http://evil.example", .protocols = kBoth};
+    const web::WebRequest stranger{.target = "/", .origin = "http://evil.example", .protocols = kBoth};
     EXPECT_EQ(open({}, stranger), 403U);
-    WebRequest known = stranger;
+    web::WebRequest known = stranger;
     known.target = "/?token=x";
     EXPECT_EQ(open({}, known), 403U) << "the run has no token";
     ServerLimits limits;
@@ -79,7 +79,7 @@ TEST_F(RosSites, TooManyWrongTokensAreToldAndTheRightOnePasses) {
     RosFeed feed(state, {});
     RosSite site(state, feed, RosLanguage::Foxglove, "room", true);
     const auto open = [&site](const char* target) {
-        const WebAdmission admission =
+        const web::WebAdmission admission =
             site.open({.target = target, .origin = "", .protocols = kBoth});
         return admission.dialogue ? 101 : admission.status;
     };
@@ -111,4 +111,4 @@ TEST_F(RosSites, AreAskedByTheirOwnName) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

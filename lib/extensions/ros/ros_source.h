@@ -11,7 +11,7 @@
 #include "sense/formats/ros_types.h"
 #include "sim/worlds.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// The worlds of a run between two steps.
 struct RosRun {
@@ -52,4 +52,4 @@ class RosSource {
 /// /L/open.
 std::shared_ptr<RosSource> liftTopics();
 
-}  // namespace ispace
+}  // namespace ispace::ros

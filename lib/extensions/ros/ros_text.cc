@@ -16,7 +16,7 @@
 #include "base/number.h"
 #include "sense/formats/cdr.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -342,4 +342,4 @@ std::string rosMessage(RosType type, const json& value) {
     return out.take();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

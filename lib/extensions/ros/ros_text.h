@@ -9,7 +9,7 @@
 
 #include "sense/formats/ros_types.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Parses a client's JSON; empty if it is none, or nests deeper than 32 levels.
 std::optional<nlohmann::json> parseClientJson(std::string_view text);
@@ -38,4 +38,4 @@ void appendCborHead(std::string& out, CborHead head, std::uint64_t value);
 /// may have the fields of ROS 1. \throws FormatError naming the field that does not fit
 std::string rosMessage(RosType type, const nlohmann::json& value);
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "sense/formats/ros_messages.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 using nlohmann::json;
@@ -148,4 +148,4 @@ TEST(RosText, LongListsOfClientsTakeTimeByTheirLength) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

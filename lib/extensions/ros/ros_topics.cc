@@ -19,7 +19,7 @@
 #include "server/server_state.h"
 #include "sim/sensor_reading.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -594,4 +594,4 @@ std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::s
     return out;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -20,7 +20,7 @@
 #include "sim/simulation.h"
 #include "sim/worlds.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Quality of service of a topic: messages kept for a slow reader, the oldest dropped first. All
 /// are reliable. A latched one also sends its last message to new readers, as do all others here.
@@ -164,4 +164,4 @@ std::vector<RosChannel> rosChannels(std::span<const RosRoom> rooms, const std::s
 /// Returns the id of that robot, "" for none.
 std::string loneRobot(std::span<const RosRoom> rooms, const std::string& lone);
 
-}  // namespace ispace
+}  // namespace ispace::ros

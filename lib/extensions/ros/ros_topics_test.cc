@@ -10,7 +10,7 @@
 #include "base/number.h"
 #include "support/test_paths.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -65,4 +65,4 @@ TEST(RosRows, EitherSendOrRead) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -9,7 +9,7 @@
 
 #include "record/text.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::string rosTypeHash(RosType type) {
     return "RIHS01_" + digest.substr(digest.find(':') + 1);
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 // As `ros2 topic info -v` of Jazzy prints them: nested types, lists, arrays, bytes, no fields.
@@ -39,4 +39,4 @@ TEST(RosTypeHash, EqualsThatOfRos) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -17,7 +17,7 @@
 #include "extensions/ros/ros_text.h"
 #include "raster/codec.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -124,14 +124,14 @@ RosbridgeDialogue::Form RosbridgeDialogue::formOf(const Wish::Ids& ids) {
 }
 
 /// Clients find their topic by the name that they asked for.
-WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry& topic,
+web::WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry& topic,
                                     const RosMessage& message) {
     const auto wish = wishes_.find(topic.channel.topic);
     if (wish == wishes_.end()) return publication(topic.channel.topic, Form::Json, message);
-    std::vector<WebMessage> all;
+    std::vector<web::WebMessage> all;
     for (const auto& [name, ids] : wish->second.names)
-        for (WebMessage& one : publications(name, ids, message)) all.push_back(std::move(one));
-    WebMessage first = std::move(all.front());
+        for (web::WebMessage& one : publications(name, ids, message)) all.push_back(std::move(one));
+    web::WebMessage first = std::move(all.front());
     all.erase(all.begin());
     // They come next: this is written only when all else is sent.
     sendParts(std::move(all));
@@ -139,20 +139,20 @@ WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry&
 }
 
 /// Returns a message, or the fragments of its text if that is longer than they shall be.
-std::vector<WebMessage> RosbridgeDialogue::publications(const std::string& name,
+std::vector<web::WebMessage> RosbridgeDialogue::publications(const std::string& name,
                                                         const Wish::Ids& ids,
                                                         const RosMessage& message) {
-    std::vector<WebMessage> out;
+    std::vector<web::WebMessage> out;
     out.push_back(publication(name, formOf(ids), message));
     std::size_t size = 0;
     for (const auto& [id, one] : ids)
         if (one.fragment > 0 && (size == 0 || one.fragment < size)) size = one.fragment;
     if (size == 0 || !out.front().is_text || out.front().size() <= size) return out;
-    const WebMessage& whole = out.front();
+    const web::WebMessage& whole = out.front();
     const std::string text = whole.head + (whole.body ? *whole.body : "") + whole.tail;
     const std::vector<std::string_view> pieces = piecesOf(text, size);
     const std::string id = std::to_string(next_fragmented_++);
-    std::vector<WebMessage> fragments;
+    std::vector<web::WebMessage> fragments;
     fragments.reserve(pieces.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         JsonWriter json;
@@ -163,7 +163,7 @@ std::vector<WebMessage> RosbridgeDialogue::publications(const std::string& name,
     return fragments;
 }
 
-WebMessage RosbridgeDialogue::publication(const std::string& name, Form form,
+web::WebMessage RosbridgeDialogue::publication(const std::string& name, Form form,
                                           const RosMessage& message) {
     if (form == Form::Json || form == Form::Png) {
         JsonWriter head;
@@ -640,4 +640,4 @@ void RosbridgeDialogue::answer(const std::string& id, std::string_view service, 
           .tail = idMember(id) + '}'});
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

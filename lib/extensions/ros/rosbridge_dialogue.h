@@ -12,7 +12,7 @@
 #include "extensions/ros/ros_dialogue.h"
 #include "extensions/ros/transform_goals.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// The rosbridge protocol, version 2.1: JSON objects with `op`, and messages of topics also in CBOR
 /// or as raw CDR within CBOR, as the subscriber chooses.
@@ -52,10 +52,10 @@ class RosbridgeDialogue final : public RosDialogue {
     };
     struct Op;
 
-    WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
+    web::WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
                      const RosMessage& message) override;
-    static WebMessage publication(const std::string& name, Form form, const RosMessage& message);
-    std::vector<WebMessage> publications(const std::string& name, const Wish::Ids& ids,
+    static web::WebMessage publication(const std::string& name, Form form, const RosMessage& message);
+    std::vector<web::WebMessage> publications(const std::string& name, const Wish::Ids& ids,
                                          const RosMessage& message);
     void tell(Level level, const std::string& text) override { tell(level, text, ""); }
     void tell(Level level, const std::string& text, const std::string& id);
@@ -97,4 +97,4 @@ class RosbridgeDialogue final : public RosDialogue {
     std::int64_t next_republished_ = 0, next_fragmented_ = 0;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

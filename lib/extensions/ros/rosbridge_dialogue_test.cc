@@ -11,7 +11,7 @@
 #include "base/message.h"
 #include "support/ros_talk.h"
 
-namespace ispace {
+namespace ispace::ros {
 namespace {
 
 using nlohmann::json;
@@ -530,4 +530,4 @@ TEST(Rosbridge, CancelsReplacesAndRefusesGoals) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ros

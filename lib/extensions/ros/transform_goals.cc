@@ -10,7 +10,7 @@
 #include "base/json_writer.h"
 #include "sense/formats/cdr.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -164,4 +164,4 @@ void TransformGoals::stepped(
     }
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

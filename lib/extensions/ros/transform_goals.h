@@ -14,7 +14,7 @@
 
 #include "extensions/ros/ros_feed.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// The frames of messages of /tf and /tf_static.
 class TransformTree {
@@ -77,4 +77,4 @@ class TransformGoals {
     TransformTree tree_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ros

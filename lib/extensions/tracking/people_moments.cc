@@ -8,10 +8,10 @@
 #include "base/error.h"
 #include "extensions/presence/people_paths.h"
 
-namespace ispace {
+namespace ispace::tracking {
 
 double PeopleMoments::duration(std::size_t moment) const {
-    if (times.size() < 2) return kPathStep;
+    if (times.size() < 2) return presence::kPathStep;
     const std::size_t begin = std::min(moment, times.size() - 2);
     return times[begin + 1] - times[begin];
 }
@@ -26,7 +26,7 @@ void MomentSampler::add(const std::string& person, double time, Point2 place) {
     constexpr double kFastest = 12;      // m/s: no person runs faster
     constexpr double kTolerance = 1e-9;  // s
     constexpr std::size_t kMaxPlaces = 2'000'000;
-    if (times_.empty() || time >= times_.back() + kPathStep - kTolerance)
+    if (times_.empty() || time >= times_.back() + presence::kPathStep - kTolerance)
         times_.push_back(time);
     else if (time != times_.back())
         return;
@@ -93,4 +93,4 @@ std::vector<Meeting> meetingsOf(const PeopleMoments& moments) {
     return meetings;
 }
 
-}  // namespace ispace
+}  // namespace ispace::tracking

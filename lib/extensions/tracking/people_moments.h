@@ -9,7 +9,7 @@
 
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::tracking {
 
 /// A person at a moment.
 struct PersonMoment {
@@ -66,4 +66,4 @@ struct Meeting {
 /// Finds the meetings. O(sum of the squares of the people of each moment)
 std::vector<Meeting> meetingsOf(const PeopleMoments& moments);
 
-}  // namespace ispace
+}  // namespace ispace::tracking

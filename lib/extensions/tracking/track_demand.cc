@@ -18,7 +18,7 @@
 #include "sense/motion_sense.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::tracking {
 
 namespace {
 
@@ -222,4 +222,4 @@ CellSet TrackDemand::servedBy(const Sensor& sensor, const std::vector<std::uint8
     return served;
 }
 
-}  // namespace ispace
+}  // namespace ispace::tracking

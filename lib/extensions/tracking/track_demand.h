@@ -10,7 +10,7 @@
 #include "arrange/demand.h"
 #include "extensions/tracking/people_moments.h"
 
-namespace ispace {
+namespace ispace::tracking {
 
 /// What counts as a loss.
 struct LossRule {
@@ -87,4 +87,4 @@ class TrackDemand : public Demand {
 /// this height; 0 above the head.
 double bodyRadiusAt(double height);
 
-}  // namespace ispace
+}  // namespace ispace::tracking

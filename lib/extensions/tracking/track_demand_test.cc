@@ -16,7 +16,7 @@
 #include "sense/detection.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::tracking {
 namespace {
 
 /// Two halves, which a narrow gap joins.
@@ -43,7 +43,7 @@ PeopleMoments standing(const std::vector<Point2>& places, int moments = 10) {
     MomentSampler sampler;
     for (int i = 0; i < moments; ++i)
         for (std::size_t k = 0; k < places.size(); ++k)
-            sampler.add("p" + std::to_string(k), i * kPathStep, places[k]);
+            sampler.add("p" + std::to_string(k), i * presence::kPathStep, places[k]);
     return sampler.finish();
 }
 
@@ -53,7 +53,7 @@ PeopleMoments walking(double x, int moments, int times = 1) {
     for (int lap = 0; lap < times; ++lap)
         for (int i = 0; i < moments; ++i) {
             const int far = lap % 2 == 0 ? i : moments - 1 - i;
-            sampler.add("ann", (lap * moments + i) * kPathStep, {x + 0.2 * far, -2.5});
+            sampler.add("ann", (lap * moments + i) * presence::kPathStep, {x + 0.2 * far, -2.5});
         }
     return sampler.finish();
 }
@@ -92,9 +92,9 @@ TEST(MomentSampler, TakesMomentsApartAndBreaksAtJumps) {
 TEST(Meetings, LastWhileTwoPeopleAreWithinAMetre) {
     MomentSampler sampler;
     for (int i = 0; i <= 40; ++i) {
-        sampler.add("ann", i * kPathStep, {-2 + 0.1 * i, 0});
-        sampler.add("bob", i * kPathStep, {2 - 0.1 * i, 0});
-        sampler.add("eve", i * kPathStep, {0, 5});
+        sampler.add("ann", i * presence::kPathStep, {-2 + 0.1 * i, 0});
+        sampler.add("bob", i * presence::kPathStep, {2 - 0.1 * i, 0});
+        sampler.add("eve", i * presence::kPathStep, {0, 5});
     }
     const PeopleMoments moments = sampler.finish();
     const std::vector<Meeting> meetings = meetingsOf(moments);
@@ -142,7 +142,7 @@ TEST(TrackDemand, CoastsOverShortGapsOnly) {
     // Ann goes behind a wall for 4 s, and comes out again.
     const Scene scene = roomScene("#env 1\nispace size=20,6,2.5\nwall from=-1,-1 to=1,-1\n");
     MomentSampler sampler;
-    for (int i = 0; i <= 60; ++i) sampler.add("ann", i * kPathStep, {-6 + 0.2 * i, -2});
+    for (int i = 0; i <= 60; ++i) sampler.add("ann", i * presence::kPathStep, {-6 + 0.2 * i, -2});
     const PeopleMoments moments = sampler.finish();
     const Sensor sensor = laserAt({0, 0}, 0, "laser,range=20,fov=360");
     const auto lost = [&](double coast) {
@@ -157,7 +157,7 @@ TEST(TrackDemand, CoastsOverShortGapsOnly) {
 
 TEST(TrackDemand, NoCoastOverAJump) {
     MomentSampler sampler;
-    for (int i = 0; i < 10; ++i) sampler.add("ann", i * kPathStep, {i < 5 ? -3.0 : 90.0, 0});
+    for (int i = 0; i < 10; ++i) sampler.add("ann", i * presence::kPathStep, {i < 5 ? -3.0 : 90.0, 0});
     const TrackDemand demand(sampler.finish(), {.coast = 60});
     const Scene scene = roomScene(kTwoRooms);
     EXPECT_NEAR(demand.lossOf(servedIn(scene, laserAt({-2, 0}), demand)).time, 1, 1e-9);
@@ -167,7 +167,7 @@ TEST(TrackDemand, LossOfASetIsThatOfTheirUnionWithCoast) {
     // Two sensors that see disjoint parts of a way: together they coast over the gap between them.
     const Scene scene = roomScene("#env 1\nispace size=40,6,2.5\n");
     MomentSampler sampler;
-    for (int i = 0; i < 100; ++i) sampler.add("ann", i * kPathStep, {-10 + 0.2 * i, 0});
+    for (int i = 0; i < 100; ++i) sampler.add("ann", i * presence::kPathStep, {-10 + 0.2 * i, 0});
     const PeopleMoments moments = sampler.finish();
     const TrackDemand demand(moments, {.coast = 1});
     CellSet served = servedIn(scene, laserAt({-5, 0}), demand);
@@ -182,7 +182,7 @@ TEST(TrackDemand, LossOfASetIsThatOfTheirUnionWithCoast) {
         gap = one ? 0 : gap + 1;
         lost += gap > 5 ? 1 : 0;
     }
-    EXPECT_NEAR(demand.lossOf(served).time, lost * kPathStep, 1e-9);
+    EXPECT_NEAR(demand.lossOf(served).time, lost * presence::kPathStep, 1e-9);
     EXPECT_EQ(lost, 1) << "before the first sight, not in the gap of half a metre";
 }
 
@@ -256,7 +256,7 @@ TEST(ArrangeForTracks, BoundIsNoMoreThanTheLeastLossOfAllPairs) {
         for (int i = 0; i < 40; ++i)
             for (std::size_t k = 0; k < places.size(); ++k) {
                 const Point2 to = places[(k + 1) % places.size()];
-                sampler.add("p" + std::to_string(k), i * kPathStep,
+                sampler.add("p" + std::to_string(k), i * presence::kPathStep,
                             places[k] + (i / 40.0) * (to - places[k]));
             }
         const auto demand = std::make_shared<TrackDemand>(sampler.finish(), LossRule{});
@@ -354,4 +354,4 @@ TEST(TrackDemand, FindingSaysWhatIsLostAndTheLeastLoss) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::tracking

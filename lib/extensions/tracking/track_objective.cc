@@ -6,7 +6,7 @@
 #include "extensions/tracking/track_demand.h"
 #include "scene/run/run_reader.h"
 
-namespace ispace {
+namespace ispace::tracking {
 
 namespace {
 
@@ -21,7 +21,7 @@ class TrackObjective : public ObjectiveGroup {
         line.group("Goals of trackers");
         line.parsed(
             "--ways", "DIR|wander:N[,TIME]",
-            [this](const std::string& text) { ways_ = parseWays(text); },
+            [this](const std::string& text) { ways_ = presence::parseWays(text); },
             "people to track: those of the run that simrun --record wrote to DIR, or N wanderers "
             "for TIME (default wander:4,10min)",
             Enters::BaseNames);
@@ -38,12 +38,12 @@ class TrackObjective : public ObjectiveGroup {
         const CommonOptions& common, std::vector<std::string>& files) const override {
         LossRule loss = loss_;
         loss.plane = how.plane;
-        const std::vector<RoomPaths> ways = waysIn(site, "--ways", ways_, common.seed, how.plane);
+        const std::vector<presence::RoomPaths> ways = presence::waysIn(site, "--ways", ways_, common.seed, how.plane);
         std::vector<std::shared_ptr<const Demand>> demands;
         for (std::size_t i = 0; i < ways.size(); ++i) {
             MomentSampler sampler;
             if (!ways[i].isEmpty())
-                visitPaths(ways[i].choice, *site.rooms()[i], ways[i].seed,
+                presence::visitPaths(ways[i].choice, *site.rooms()[i], ways[i].seed,
                            [&sampler](const std::string& id, double time, Point2 place) {
                                sampler.add(id, time, place);
                            });
@@ -58,7 +58,7 @@ class TrackObjective : public ObjectiveGroup {
     }
 
   private:
-    PathsChoice ways_ = parseWays("wander:4,10min");
+    presence::PathsChoice ways_ = presence::parseWays("wander:4,10min");
     LossRule loss_ = {};
 };
 
@@ -66,4 +66,4 @@ class TrackObjective : public ObjectiveGroup {
 
 std::unique_ptr<ObjectiveGroup> makeTrackObjective() { return std::make_unique<TrackObjective>(); }
 
-}  // namespace ispace
+}  // namespace ispace::tracking

@@ -5,9 +5,9 @@
 
 #include "cli/objective_extension.h"
 
-namespace ispace {
+namespace ispace::tracking {
 
 /// Returns the objective and options of `arrange --objective track`.
 std::unique_ptr<ObjectiveGroup> makeTrackObjective();
 
-}  // namespace ispace
+}  // namespace ispace::tracking

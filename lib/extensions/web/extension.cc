@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension web() { return {.name = "web", .bridge = makeWebOptions}; }
+Extension web() { return {.name = "web", .bridge = web::makeWebOptions}; }
 
 }  // namespace ispace::extension

@@ -17,7 +17,7 @@
 
 #include "extensions/web/web_files.h"
 
-namespace ispace {
+namespace ispace::web {
 
 namespace {
 
@@ -335,4 +335,4 @@ std::shared_ptr<WebConnection> serveBrowser(tcp::socket socket, WebSite& site,
     return browser;
 }
 
-}  // namespace ispace
+}  // namespace ispace::web

@@ -9,7 +9,7 @@
 #include "extensions/web/web_dialogue.h"
 #include "server/server_state.h"
 
-namespace ispace {
+namespace ispace::web {
 
 /// The transport of a browser, or of another client of a WebSite: HTTP requests for files, until
 /// one upgrades it to a WebSocket with a WebDialogue.
@@ -48,4 +48,4 @@ class WebConnection {
 std::shared_ptr<WebConnection> serveBrowser(boost::asio::ip::tcp::socket socket, WebSite& site,
                                             const ServerLimits& limits);
 
-}  // namespace ispace
+}  // namespace ispace::web

@@ -12,7 +12,7 @@
 #include "extensions/web/web_files.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::web {
 
 /// A message of a WebSocket in pieces, so that connections can share the large one.
 struct WebMessage {
@@ -104,4 +104,4 @@ class WebSite {
     virtual void lookAtEnd() {}
 };
 
-}  // namespace ispace
+}  // namespace ispace::web

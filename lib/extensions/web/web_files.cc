@@ -35,7 +35,7 @@ ISPACE_WEB_FILE(kWebMarks, "marks.js");
 ISPACE_WEB_FILE(kWebSpace, "space.js");
 ISPACE_WEB_FILE(kWebTools, "tools.js");
 
-namespace ispace {
+namespace ispace::web {
 
 const WebFile* webFile(std::string_view path) {
     const auto between = [](const char* begin, const char* end) {
@@ -108,4 +108,4 @@ std::string contentPolicy(std::string_view host) {
     return out.append(host).append("; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
 }
 
-}  // namespace ispace
+}  // namespace ispace::web

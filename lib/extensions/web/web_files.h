@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace ispace {
+namespace ispace::web {
 
 /// A file of the page that --web serves; embedded in the program.
 struct WebFile {
@@ -42,4 +42,4 @@ class WebOrigin {
 /// server only, and no embedding in other pages. \pre the host was accepted
 std::string contentPolicy(std::string_view host);
 
-}  // namespace ispace
+}  // namespace ispace::web

@@ -26,7 +26,7 @@
 #include "sim/mover.h"
 #include "sim/sim_time.h"
 
-namespace ispace {
+namespace ispace::web {
 
 namespace {
 
@@ -496,4 +496,4 @@ std::string WebFrames::withReadings(bool all) {
     return out += "]}";
 }
 
-}  // namespace ispace
+}  // namespace ispace::web

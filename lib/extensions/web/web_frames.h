@@ -14,7 +14,7 @@
 #include "sim/simulation.h"
 #include "sim/worlds.h"
 
-namespace ispace {
+namespace ispace::web {
 
 /// Data of the page of one room, besides its scene.
 struct WebSceneFacts {
@@ -99,4 +99,4 @@ class WebFrames {
     std::shared_ptr<Mesh> mesh_ = std::make_shared<Mesh>();  // shared with jobs in the background
 };
 
-}  // namespace ispace
+}  // namespace ispace::web

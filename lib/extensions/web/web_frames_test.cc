@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 #include "support/test_world.h"
 
-namespace ispace {
+namespace ispace::web {
 namespace {
 
 using std::chrono::milliseconds;
@@ -180,4 +180,4 @@ TEST(WebFrames, FollowTheWorldIntoAnotherScene) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::web

@@ -10,7 +10,7 @@
 #include "io/glb/glb_write.h"
 #include "scene/run/run_marks.h"
 
-namespace ispace {
+namespace ispace::web {
 
 namespace {
 
@@ -69,4 +69,4 @@ void WebOptions::announce(JsonWriter& json) const {
 
 std::unique_ptr<BridgeGroup> makeWebOptions() { return std::make_unique<WebOptions>(); }
 
-}  // namespace ispace
+}  // namespace ispace::web

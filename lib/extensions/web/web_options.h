@@ -5,9 +5,9 @@
 
 #include "cli/run_bridge.h"
 
-namespace ispace {
+namespace ispace::web {
 
 /// Returns the option --web of simrun and its like.
 std::unique_ptr<BridgeGroup> makeWebOptions();
 
-}  // namespace ispace
+}  // namespace ispace::web

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ispace {
+namespace ispace::web {
 namespace {
 
 TEST(WebOrigin, KnowsItsOwnNames) {
@@ -52,4 +52,4 @@ TEST(WebOrigin, PolicyNamesTheSocket) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::web

@@ -12,7 +12,7 @@
 #include "scene/placement_schemas.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::web {
 
 namespace {
 
@@ -231,4 +231,4 @@ void WebPage::lookAtEnd() {
         room.frames.look(std::max(std::chrono::steady_clock::now(), room.frames.nextLook()));
 }
 
-}  // namespace ispace
+}  // namespace ispace::web

@@ -15,7 +15,7 @@
 #include "server/server.h"
 #include "server/server_state.h"
 
-namespace ispace {
+namespace ispace::web {
 
 /// Parts of the page that depend on the options of the run.
 struct WebPageOptions {
@@ -65,4 +65,4 @@ class WebPage final : public WebSite {
     std::optional<WebOrigin> origin_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::web

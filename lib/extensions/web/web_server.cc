@@ -7,7 +7,7 @@
 
 #include "server/network.h"
 
-namespace ispace {
+namespace ispace::web {
 
 namespace {
 
@@ -108,4 +108,4 @@ void WebServer::closeAll() {
     sweep();
 }
 
-}  // namespace ispace
+}  // namespace ispace::web

@@ -15,7 +15,7 @@
 #include "server/bridge.h"
 #include "server/server.h"
 
-namespace ispace {
+namespace ispace::web {
 
 /// Serves a site to browsers and other clients of WebSockets. Belongs to a Server and runs in its
 /// thread and event loop.
@@ -49,4 +49,4 @@ class WebServer final : public Bridge {
     std::vector<std::shared_ptr<WebConnection>> connections_;  // in order of arrival
 };
 
-}  // namespace ispace
+}  // namespace ispace::web

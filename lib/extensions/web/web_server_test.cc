@@ -9,7 +9,7 @@
 #include "support/test_client.h"
 #include "support/test_web.h"
 
-namespace ispace {
+namespace ispace::web {
 namespace {
 
 using testing::Browser;
@@ -276,4 +276,4 @@ TEST(WebServer, WhoNeverReadsHoldsNoMoreThanAFrame) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::web

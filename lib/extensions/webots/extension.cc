@@ -6,7 +6,7 @@
 namespace ispace::extension {
 
 Extension webots() {
-    return {.name = "webots", .add = [] { addImporters(webotsImporters()); }};
+    return {.name = "webots", .add = [] { addImporters(webots::webotsImporters()); }};
 }
 
 }  // namespace ispace::extension

@@ -7,7 +7,7 @@
 #include "base/number.h"
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::webots {
 
 namespace {
 
@@ -217,4 +217,4 @@ VrmlFile::VrmlFile(std::string_view bytes, const std::string& name, Budget& work
     Parser(bytes, name, work, *this).parse();
 }
 
-}  // namespace ispace
+}  // namespace ispace::webots

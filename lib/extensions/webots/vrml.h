@@ -12,7 +12,7 @@
 
 #include "base/budget.h"
 
-namespace ispace {
+namespace ispace::webots {
 
 struct VrmlNode;
 
@@ -59,4 +59,4 @@ class VrmlFile {
     std::vector<const VrmlNode*> roots_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::webots

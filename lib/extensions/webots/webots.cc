@@ -16,7 +16,7 @@
 #include "geom/rotation.h"
 #include "io/import_records.h"
 
-namespace ispace {
+namespace ispace::webots {
 
 namespace {
 
@@ -82,7 +82,7 @@ class WebotsReader {
     WebotsReader(std::string_view bytes, const std::string& name, Budget& work, ImportRecords& out)
         : name_(name), work_(work), out_(out), file_(bytes, name, work) {}
 
-    WorldShapes read() {
+    worlds::WorldShapes read() {
         checkVersion();
         const WebotsContext world{{worldFrame(), Vector3d::Ones()}};
         for (const VrmlNode* node : file_.roots()) visit(*node, world);
@@ -250,7 +250,7 @@ class WebotsReader {
         visitAll(node, "endPoint", *context);
     }
 
-    void add(const VrmlNode& node, WorldShape shape) {
+    void add(const VrmlNode& node, worlds::WorldShape shape) {
         if (!work_.take(kShapeWork))
             fail(node, "its shapes, as often as they are used, make " + work_.excess());
         if (!shape.world_from_shape.matrix().allFinite() ||
@@ -263,9 +263,9 @@ class WebotsReader {
     /// Adds a box by its centre and sizes in the frame of the context.
     void addBox(const VrmlNode& node, const WebotsContext& around, const Vector3d& center,
                 const Vector3d& size, bool is_wall = false,
-                std::optional<WorldOpening> opening = {}) {
+                std::optional<worlds::WorldOpening> opening = {}) {
         const Vector3d& scale = around.frame.scale;
-        WorldBox box;
+        worlds::WorldBox box;
         for (Eigen::Index i = 0; i < 3; ++i)
             box.size[static_cast<std::size_t>(i)] = scale(i) * size(i);
         box.opening = opening;
@@ -287,7 +287,7 @@ class WebotsReader {
         Transform pose = around.frame.pose;
         if (is_ball) pose.linear().setIdentity();
         add(node,
-            {WorldCylinder{scale.x() * radius, scale.z() * height}, pose, around.model, node.line});
+            {worlds::WorldCylinder{scale.x() * radius, scale.z() * height}, pose, around.model, node.line});
     }
 
     void addUnread(const std::string& kind, const VrmlNode& node, const WebotsContext& around,
@@ -295,7 +295,7 @@ class WebotsReader {
         ++found_.left_out[kind];
         found_.unread.push_back({kind,
                                  {},
-                                 floorOf(around.frame.pose.translation()),
+                                 worlds::floorOf(around.frame.pose.translation()),
                                  node.line,
                                  around.model.empty() ? "" : "the solid " + printable(around.model),
                                  extent});
@@ -351,7 +351,7 @@ class WebotsReader {
             const Vector3d p(numbers[i], numbers[i + 1], numbers[i + 2]);
             low = low.cwiseMin(p);
             high = high.cwiseMax(p);
-            extent.add(floorOf(around.frame.pose * around.frame.scale.cwiseProduct(p)));
+            extent.add(worlds::floorOf(around.frame.pose * around.frame.scale.cwiseProduct(p)));
             if (corners.size() <= 8) corners.insert({p.x(), p.y(), p.z()});
         }
         const bool is_box = corners.size() == 8 && std::ranges::all_of(corners, [&](const auto& p) {
@@ -442,10 +442,10 @@ class WebotsReader {
     }
 
     /// Returns the opening in a Door or Window, between the posts of its frame.
-    [[nodiscard]] std::optional<WorldOpening> openingOf(const VrmlNode& node, const Vector3d& scale,
+    [[nodiscard]] std::optional<worlds::WorldOpening> openingOf(const VrmlNode& node, const Vector3d& scale,
                                                         const WallSizes& sizes) const {
         if (node.type == "Wall") return std::nullopt;
-        WorldOpening opening;
+        worlds::WorldOpening opening;
         opening.width = scale.y() * (sizes.size[1] - 2 * sizes.frame[1]);
         if (!(opening.width > 0)) fail(node, "its frame is as wide as the opening");
         opening.is_window = node.type == "Window";
@@ -474,7 +474,7 @@ class WebotsReader {
     Budget& work_;
     ImportRecords& out_;
     VrmlFile file_;
-    WorldShapes found_;
+    worlds::WorldShapes found_;
     std::set<const VrmlNode*> warned_;  // those that USE repeats
 };
 
@@ -487,7 +487,7 @@ Document readWebots(std::string_view bytes, const std::string& name, const Impor
     ImportRecords out(schemas, name, options);
     Budget work(bytes.size(), options.max_work);
     withFileName(name, [&] {
-        writeWorldRoom(WebotsReader(bytes, name, work, out).read(), name, options, schemas, work,
+        worlds::writeWorldRoom(WebotsReader(bytes, name, work, out).read(), name, options, schemas, work,
                        out);
     });
     return out.take();
@@ -500,4 +500,4 @@ std::span<const Importer> webotsImporters() {
     return kRows;
 }
 
-}  // namespace ispace
+}  // namespace ispace::webots

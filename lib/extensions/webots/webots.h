@@ -8,7 +8,7 @@
 
 #include "io/importers.h"
 
-namespace ispace {
+namespace ispace::webots {
 
 /// Returns true if the bytes begin with `#VRML_SIM`.
 bool isWebotsWorld(std::string_view bytes);
@@ -35,4 +35,4 @@ Document readWebots(std::string_view bytes, const std::string& name, const Impor
 /// The row of Webots, for addImporters().
 std::span<const Importer> webotsImporters();
 
-}  // namespace ispace
+}  // namespace ispace::webots

@@ -10,7 +10,7 @@
 #include "support/test_damage.h"
 #include "support/test_import.h"
 
-namespace ispace {
+namespace ispace::webots {
 namespace {
 
 std::string worldOf(const std::string& nodes) { return "#VRML_SIM R2023b utf8\n" + nodes; }
@@ -316,4 +316,4 @@ TEST(Webots, DamagedFilesAreRefusedOrRead) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::webots

@@ -6,7 +6,7 @@
 #include <bit>
 #include <charconv>
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::optional<std::int64_t> ColaReader::i32() {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(*value));
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

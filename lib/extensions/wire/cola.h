@@ -17,7 +17,7 @@
 #include "extensions/wire/wire_session.h"
 #include "scene/sensor/laser.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// The content of a telegram, "sRN LMDscandata", and the dialect it came in.
 struct ColaTelegram {
@@ -172,4 +172,4 @@ class ColaSession : public WireSession {
 
 extern const WireProtocol kCola;
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -408,4 +408,4 @@ void ColaSession::appendDate(ColaWriter& out) const {
     out.u32(static_cast<std::uint32_t>(time.subseconds().count()));
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -11,7 +11,7 @@
 
 #include "support/test_laser_host.h"
 
-namespace ispace {
+namespace ispace::wire {
 namespace {
 
 using testing::answered;
@@ -362,4 +362,4 @@ TEST(ColaSession, PiecesDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace ispace {
+namespace ispace::wire {
 namespace {
 
 std::string bytes(std::initializer_list<int> values) {
@@ -107,4 +107,4 @@ TEST(Cola, NumbersInB) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -9,7 +9,7 @@
 #include "server/server.h"
 #include "server/session.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 std::string DeviceBridge::open(const WireProtocol& protocol, const std::string& id,
                                const Endpoint& endpoint) {
@@ -57,4 +57,4 @@ void DeviceBridge::closeAll() {
     for (DevicePort& port : ports_) port.closeAll();
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -8,7 +8,7 @@
 #include "extensions/wire/picture_files.h"
 #include "server/bridge.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// Serves robots and sensors of a run through the protocols of real devices, each at a port of its
 /// own. Pictures are captured once for all ports.
@@ -35,4 +35,4 @@ class DeviceBridge final : public Bridge {
     std::list<DevicePort> ports_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -15,7 +15,7 @@
 #include "server/client_connection.h"
 #include "server/network.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -352,4 +352,4 @@ void DevicePort::closeAll() {
     sweep();
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -21,7 +21,7 @@
 #include "server/server_state.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// The transport of a WireSession. Non-blocking; pending handlers keep it alive until it is closed.
 ///
@@ -151,4 +151,4 @@ class DevicePort {
     std::vector<std::shared_ptr<DeviceConnection>> connections_;  // in order of arrival
 };
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -23,9 +23,9 @@ constexpr std::size_t kPacket = 20000, kRoom = 50000;
 /// Echoes lines; `hold` takes the robot, `stream` sends a numbered packet after each step, `many` a
 /// long answer, `clock` the time, `wait` an answer once it has had its turn three times, `quit`
 /// ends.
-class EchoSession : public WireSession {
+class EchoSession : public wire::WireSession {
   public:
-    EchoSession(WireHost& host, std::string id) : host_(&host), id_(std::move(id)) {}
+    EchoSession(wire::WireHost& host, std::string id) : host_(&host), id_(std::move(id)) {}
     ~EchoSession() override {
         if (hold_) host_->release(id_, *hold_);
     }
@@ -70,7 +70,7 @@ class EchoSession : public WireSession {
         send(line + (line == "many" ? std::string(kPacket, 'm') + "\n" : "\n"));
     }
 
-    WireHost* host_;
+    wire::WireHost* host_;
     std::string id_, line_;
     std::optional<std::int64_t> hold_;
     bool streams_ = false;
@@ -78,7 +78,7 @@ class EchoSession : public WireSession {
     int turns_ = 0;
 };
 
-std::unique_ptr<WireSession> open(WireHost& host, const std::string& id) {
+std::unique_ptr<wire::WireSession> open(wire::WireHost& host, const std::string& id) {
     return std::make_unique<EchoSession>(host, id);
 }
 
@@ -89,26 +89,26 @@ class ListenedSession : public EchoSession {
     [[nodiscard]] bool isEngaged() const override { return true; }
 };
 
-const WireProtocol kEcho{"echo", "ROBOT", "for tests", 7, 2, refusalOfRobot, open};
-const WireProtocol kListened{
+const wire::WireProtocol kEcho{"echo", "ROBOT", "for tests", 7, 2, wire::refusalOfRobot, open};
+const wire::WireProtocol kListened{
     "listened",
     "ROBOT",
     "for tests",
     7,
     2,
-    refusalOfRobot,
-    [](WireHost& host, const std::string& id) {
-        return std::unique_ptr<WireSession>(std::make_unique<ListenedSession>(host, id));
+    wire::refusalOfRobot,
+    [](wire::WireHost& host, const std::string& id) {
+        return std::unique_ptr<wire::WireSession>(std::make_unique<ListenedSession>(host, id));
     }};
 
 /// A server with such a port, in a thread.
 class EchoServer {
   public:
     explicit EchoServer(Clock clock = {Clock::Kind::Real, 100}, const ServerLimits& limits = {},
-                        const WireProtocol& protocol = kEcho)
+                        const wire::WireProtocol& protocol = kEcho)
         : room_(clock),
           server_(room_.simulation, parseEndpoint("127.0.0.1:0"), limits),
-          address_(server_.add(std::make_unique<DeviceBridge>(server_.host()))
+          address_(server_.add(std::make_unique<wire::DeviceBridge>(server_.host()))
                        .open(protocol, "r1", parseEndpoint("127.0.0.1:0"))),
           thread_([this] { server_.run(); }) {}
     ~EchoServer() {
@@ -130,7 +130,7 @@ class EchoServer {
     std::thread thread_;
 };
 
-TEST(DevicePort, CarriesBytesBothWaysAndTheLastOnesToo) {
+TEST(wire::DevicePort, CarriesBytesBothWaysAndTheLastOnesToo) {
     EchoServer run;
     Client client(run.echoPort());
     client.connect();
@@ -141,7 +141,7 @@ TEST(DevicePort, CarriesBytesBothWaysAndTheLastOnesToo) {
     EXPECT_EQ(client.rest(), "three\nquit\nunread\n");
 }
 
-TEST(DevicePort, AnswersWhoHasFinishedSending) {
+TEST(wire::DevicePort, AnswersWhoHasFinishedSending) {
     EchoServer run;
     Client client(run.echoPort());
     client.connect();
@@ -150,22 +150,22 @@ TEST(DevicePort, AnswersWhoHasFinishedSending) {
     EXPECT_EQ(client.rest(), "one\nmany" + std::string(kPacket, 'm') + "\n");
 }
 
-TEST(DevicePort, NeedsSuchADevice) {
+TEST(wire::DevicePort, NeedsSuchADevice) {
     TestWorld room;
     Server server(room.simulation, parseEndpoint("127.0.0.1:0"));
     try {
         static_cast<void>(
-            DeviceBridge(server.host()).open(kEcho, "r3", parseEndpoint("127.0.0.1:0")));
+            wire::DeviceBridge(server.host()).open(kEcho, "r3", parseEndpoint("127.0.0.1:0")));
         FAIL();
     } catch (const UsageError& error) {
         EXPECT_STREQ(error.what(), "no robot `r3`, did you mean `r1`?");
     }
-    EXPECT_EQ(refusalOfSensor(room.world, "laser", "l1"), "");
-    EXPECT_EQ(refusalOfSensor(room.world, "laser", "xyz"), "no laser `xyz`, there is l1, l2");
-    EXPECT_EQ(refusalOfSensor(room.world, "camera", "l1"), "no camera `l1`: the scene has none");
+    EXPECT_EQ(wire::refusalOfSensor(room.world, "laser", "l1"), "");
+    EXPECT_EQ(wire::refusalOfSensor(room.world, "laser", "xyz"), "no laser `xyz`, there is l1, l2");
+    EXPECT_EQ(wire::refusalOfSensor(room.world, "camera", "l1"), "no camera `l1`: the scene has none");
 }
 
-TEST(DevicePort, ServesSoManyAndNoMore) {
+TEST(wire::DevicePort, ServesSoManyAndNoMore) {
     EchoServer run;
     Client a(run.echoPort()), b(run.echoPort()), c(run.echoPort());
     EXPECT_EQ(a.connect().ask("a"), "a");
@@ -181,7 +181,7 @@ TEST(DevicePort, ServesSoManyAndNoMore) {
     }));
 }
 
-TEST(DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
+TEST(wire::DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
     EchoServer run;
     Client mute(run.echoPort()), other(run.echoPort());
     mute.connect().send("stray bytes");
@@ -195,7 +195,7 @@ TEST(DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
     EXPECT_EQ(other.ask("still"), "still");
 }
 
-TEST(DevicePort, WhoHasSaidAWordAndNoMoreMakesRoomUnlessItIsServed) {
+TEST(wire::DevicePort, WhoHasSaidAWordAndNoMoreMakesRoomUnlessItIsServed) {
     EchoServer run;
     Client idle(run.echoPort()), served(run.echoPort());
     EXPECT_EQ(idle.connect().ask("a"), "a");
@@ -211,7 +211,7 @@ TEST(DevicePort, WhoHasSaidAWordAndNoMoreMakesRoomUnlessItIsServed) {
     EXPECT_EQ(served.ask("still"), "still");
 }
 
-TEST(DevicePort, WhoAsksNothingForLongEnds) {
+TEST(wire::DevicePort, WhoAsksNothingForLongEnds) {
     ServerLimits limits;
     limits.roleless = std::chrono::milliseconds(200);
     EchoServer run({Clock::Kind::Real, 100}, limits);
@@ -222,14 +222,14 @@ TEST(DevicePort, WhoAsksNothingForLongEnds) {
     for (int i = 0; i < 100; ++i) EXPECT_EQ(served.line().size(), kPacket - 1);
 }
 
-TEST(DevicePort, ChangesHaveTheirTurnWhileTheWorldWaits) {
+TEST(wire::DevicePort, ChangesHaveTheirTurnWhileTheWorldWaits) {
     EchoServer run({Clock::Kind::Step, 1});
     Client client(run.echoPort());
     EXPECT_EQ(client.connect().ask("wait"), "wait");
     EXPECT_EQ(client.line(), "done");
 }
 
-TEST(DevicePort, WhoOnlyListensStays) {
+TEST(wire::DevicePort, WhoOnlyListensStays) {
     EchoServer run({Clock::Kind::Real, 100}, {}, kListened);
     Client a(run.echoPort()), b(run.echoPort());
     a.connect();
@@ -242,7 +242,7 @@ TEST(DevicePort, WhoOnlyListensStays) {
     EXPECT_EQ(b.ask("b"), "b");
 }
 
-TEST(DevicePort, WhoSendsNoMoreReadsOnUntilOthersCome) {
+TEST(wire::DevicePort, WhoSendsNoMoreReadsOnUntilOthersCome) {
     EchoServer run;
     Client reader(run.echoPort()), other(run.echoPort());
     reader.connect().send("stream\n");
@@ -254,7 +254,7 @@ TEST(DevicePort, WhoSendsNoMoreReadsOnUntilOthersCome) {
     EXPECT_EQ(next.connect().ask("c"), "c");
 }
 
-TEST(DevicePort, WhoHasLeftIsNoHindrance) {
+TEST(wire::DevicePort, WhoHasLeftIsNoHindrance) {
     EchoServer run;
     std::list<Client> left;
     for (int i = 0; i < 20; ++i) {
@@ -266,7 +266,7 @@ TEST(DevicePort, WhoHasLeftIsNoHindrance) {
     EXPECT_EQ(next.connect().ask("me"), "me");
 }
 
-TEST(DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
+TEST(wire::DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
     EchoServer run({Clock::Kind::Step, 1});
     Client text(run.server().port()), device(run.echoPort()), world(run.server().port());
     text.take("ROBOT r1");
@@ -285,7 +285,7 @@ TEST(DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
     EXPECT_NE(robot.ask("STATUS").find(" speed=0.000 "), std::string::npos);
 }
 
-TEST(DevicePort, ClocksShowSimulatedTimeOrThatOfTheWall) {
+TEST(wire::DevicePort, ClocksShowSimulatedTimeOrThatOfTheWall) {
     EchoServer simulated({Clock::Kind::Step, 1});
     Client device(simulated.echoPort()), world(simulated.server().port());
     EXPECT_EQ(device.connect().ask("clock"), "0");
@@ -301,7 +301,7 @@ TEST(DevicePort, ClocksShowSimulatedTimeOrThatOfTheWall) {
     EXPECT_TRUE(soon([&] { return std::stoll(other.ask("clock")) > first + 20'000'000; }));
 }
 
-TEST(DevicePort, ASlowReaderMissesWholePackets) {
+TEST(wire::DevicePort, ASlowReaderMissesWholePackets) {
     EchoServer run;
     Client client(run.echoPort(), 4096);
     client.connect().send("stream\n");
@@ -325,7 +325,7 @@ TEST(DevicePort, ASlowReaderMissesWholePackets) {
     EXPECT_GT(missed, 0);
 }
 
-TEST(DevicePort, AFloodHarmsNobody) {
+TEST(wire::DevicePort, AFloodHarmsNobody) {
     EchoServer run;
     Client flood(run.echoPort(), 4096), world(run.server().port());
     flood.connect();

@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension wire() { return {.name = "wire", .bridge = makeWireOptions}; }
+Extension wire() { return {.name = "wire", .bridge = wire::makeWireOptions}; }
 
 }  // namespace ispace::extension

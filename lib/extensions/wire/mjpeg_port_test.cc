@@ -10,7 +10,7 @@
 #include "extensions/wire/mjpeg_session.h"
 #include "support/test_client.h"
 
-namespace ispace {
+namespace ispace::wire {
 namespace {
 
 using testing::Client;
@@ -104,4 +104,4 @@ TEST(ServerMjpeg, AStreamBySteps) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -12,7 +12,7 @@
 #include "base/number.h"
 #include "extensions/wire/picture_files.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -237,4 +237,4 @@ const WireProtocol kMjpeg{
     .refusal = refusalOfMjpeg,
     .open = openMjpeg};
 
-}  // namespace ispace
+}  // namespace ispace::wire

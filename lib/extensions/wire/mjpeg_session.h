@@ -9,7 +9,7 @@
 
 #include "extensions/wire/wire_session.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// A parsed HTTP request for a picture.
 struct PictureRequest {
@@ -54,4 +54,4 @@ class MjpegSession : public WireSession {
 /// The row of `--mjpeg`.
 extern const WireProtocol kMjpeg;
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -5,7 +5,7 @@
 
 #include "support/test_host.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -266,4 +266,4 @@ TEST(PictureFiles, OneIsMadeForAllWhoAskMeanwhile) {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "extensions/wire/p2os_session.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -217,4 +217,4 @@ void P2osSession::stat(const P2osPacket& packet) {
     if (mode == 1) sendSim();
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

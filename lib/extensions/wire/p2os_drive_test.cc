@@ -7,7 +7,7 @@
 
 #include "support/test_pioneer.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -253,4 +253,4 @@ TEST(P2osDrive, GetsTheDefaultsOfTheWheelsBack) {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -9,7 +9,7 @@
 
 #include "extensions/wire/wire_session.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -296,4 +296,4 @@ std::string p2osLaserPackets(int mode, const P2osType& type, const Pose2& pose,
     return out;
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

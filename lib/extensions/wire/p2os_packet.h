@@ -17,7 +17,7 @@
 #include "scene/scene.h"
 #include "sim/sim_time.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// A packet without its frame.
 struct P2osPacket {
@@ -167,4 +167,4 @@ struct P2osLaser {
 std::string p2osLaserPackets(int mode, const P2osType& type, const Pose2& pose,
                              std::span<const float> ranges, double max_range);
 
-}  // namespace ispace
+}  // namespace ispace::wire

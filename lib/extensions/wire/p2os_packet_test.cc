@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -167,4 +167,4 @@ TEST(P2osPacket, ReadsNumbers) {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::wire

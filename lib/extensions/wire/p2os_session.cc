@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -393,4 +393,4 @@ const WireProtocol kP2os{.name = "p2os",
                          .refusal = refusalOfRobot,
                          .open = openP2os};
 
-}  // namespace ispace
+}  // namespace ispace::wire

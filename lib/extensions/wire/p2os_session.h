@@ -14,7 +14,7 @@
 #include "sim/motion.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// The motion controller of a Pioneer: stores separate goals for translation and rotation, and
 /// converts them to wheel commands. Numbers are in millimetres and degrees.
@@ -193,4 +193,4 @@ class P2osSession : public WireSession {
 /// The row of `--p2os`.
 extern const WireProtocol kP2os;
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -8,7 +8,7 @@
 
 #include "support/test_pioneer.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -369,4 +369,4 @@ TEST(P2osSession, SurvivesAnything) {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::wire

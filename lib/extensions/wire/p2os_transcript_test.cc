@@ -9,7 +9,7 @@
 #include "extensions/wire/p2os_session.h"
 #include "support/test_host.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -166,4 +166,4 @@ TEST(P2osTranscript, OfPlayer) {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -6,7 +6,7 @@
 #include "raster/codec.h"
 #include "sense/formats/reading_picture.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -79,4 +79,4 @@ void PictureFiles::make(World& world, std::size_t sensor, const Entry& entry, co
         });
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

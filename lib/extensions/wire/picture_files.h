@@ -13,7 +13,7 @@
 
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// A picture or a depth frame, encoded as a file.
 struct PictureFile {
@@ -58,4 +58,4 @@ class PictureFiles {
     WallTime next_{};
 };
 
-}  // namespace ispace
+}  // namespace ispace::wire

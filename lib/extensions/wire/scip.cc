@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -245,4 +245,4 @@ ScipSweep parseScipSweep(std::string_view parameters, bool streams, int last, st
     return sweep;
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

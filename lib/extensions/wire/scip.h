@@ -13,7 +13,7 @@
 #include "extensions/wire/wire_session.h"
 #include "scene/sensor/laser.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// Description of a laser in SCIP 2.0, and conversion of its ranges to numbers. Steps of a turn
 /// count counter-clockwise; `front` is the step of bearing 0, `first` that of the first beam.
@@ -160,4 +160,4 @@ class ScipSession : public WireSession {
 
 extern const WireProtocol kScip;
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -7,7 +7,7 @@
 
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::wire {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
@@ -90,4 +90,4 @@ TEST(ScipModel, ClustersAreTheLeastDistance) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdio>
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -321,4 +321,4 @@ std::string ScipSession::state() const {
     return out;
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -10,7 +10,7 @@
 
 #include "support/test_laser_host.h"
 
-namespace ispace {
+namespace ispace::wire {
 namespace {
 
 using testing::answered;
@@ -388,4 +388,4 @@ TEST(ScipSession, PiecesDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace ispace {
+namespace ispace::wire {
 namespace {
 
 // The values of this file are those of Hokuyo's specification and of logs of devices.
@@ -135,4 +135,4 @@ TEST(Scip, Sweeps) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -13,7 +13,7 @@
 #include "extensions/wire/device_bridge.h"
 #include "extensions/wire/wire_session.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -119,4 +119,4 @@ void WireOptions::announce(JsonWriter& json) const {
 
 std::unique_ptr<BridgeGroup> makeWireOptions() { return std::make_unique<WireOptions>(); }
 
-}  // namespace ispace
+}  // namespace ispace::wire

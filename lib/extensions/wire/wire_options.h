@@ -5,9 +5,9 @@
 
 #include "cli/run_bridge.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// Returns an option of simrun for each protocol of a real device, and their clock.
 std::unique_ptr<BridgeGroup> makeWireOptions();
 
-}  // namespace ispace
+}  // namespace ispace::wire

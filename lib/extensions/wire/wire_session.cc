@@ -14,7 +14,7 @@
 #include "extensions/wire/wire_session.h"
 #include "extensions/wire/zps_session.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 std::span<const WireProtocol* const> wireProtocols() {
     static constexpr std::array kProtocols{&kP2os, &kScip, &kCola, &kMjpeg, &kZps};
@@ -66,4 +66,4 @@ std::string refusalOfRobot(const World& world, std::string_view id) {
     return unknown("robot", id, known);
 }
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -18,7 +18,7 @@
 #include "extensions/wire/picture_files.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// A session's interface to the run. All calls happen between steps, in the thread that takes them.
 class WireHost {
@@ -145,4 +145,4 @@ std::string refusalOfSensor(const World& world, std::string_view keyword, std::s
 /// The same for robots.
 std::string refusalOfRobot(const World& world, std::string_view id);
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -5,7 +5,7 @@
 
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -88,4 +88,4 @@ const WireProtocol kZps{
     .refusal = refusalOfZps,
     .open = openZps};
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -9,7 +9,7 @@
 
 #include "extensions/wire/wire_session.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 /// Sends positions of ultrasonic tags as lines of text, for programs that read a Furukawa ZPS-3D.
 /// Its native format is not public; ispace-wire(7) defines this one. Input is ignored.
@@ -40,4 +40,4 @@ class ZpsSession : public WireSession {
 /// The row of `--zps`.
 extern const WireProtocol kZps;
 
-}  // namespace ispace
+}  // namespace ispace::wire

@@ -5,7 +5,7 @@
 
 #include "support/test_host.h"
 
-namespace ispace {
+namespace ispace::wire {
 
 namespace {
 
@@ -84,4 +84,4 @@ TEST(ZpsSession, FollowsChanges) {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::wire

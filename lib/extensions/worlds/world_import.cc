@@ -28,7 +28,7 @@
 #include "io/sdf/sdf_parts.h"
 #include "io/unread.h"
 
-namespace ispace {
+namespace ispace::worlds {
 
 namespace {
 
@@ -521,4 +521,4 @@ void writeWorldRoom(WorldShapes world, const std::string& name, const ImportOpti
     WorldImporter(std::move(world), name, options, schemas, work, out).write();
 }
 
-}  // namespace ispace
+}  // namespace ispace::worlds

@@ -18,7 +18,7 @@
 #include "io/plan/plan_rooms.h"
 #include "record/schema.h"
 
-namespace ispace {
+namespace ispace::worlds {
 
 /// Bodies that stand on the floor may begin this far from it, in metres.
 constexpr double kMaxFoot = 0.1;
@@ -110,4 +110,4 @@ std::vector<WorldMeshCut> wallsAmong(
 void writeWorldRoom(WorldShapes world, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas, Budget& work, ImportRecords& out);
 
-}  // namespace ispace
+}  // namespace ispace::worlds

@@ -16,7 +16,7 @@
 #include "geom/rotation.h"
 #include "io/unread.h"
 
-namespace ispace {
+namespace ispace::worlds {
 
 /// Shapes of a world, in their own frames: centre in the origin, z along a cylinder and out of a
 /// polyline's plane.
@@ -61,4 +61,4 @@ struct WorldShapes {
     std::vector<UnreadThing> unread = {};         ///< of what is left out, those that may be walls
 };
 
-}  // namespace ispace
+}  // namespace ispace::worlds

@@ -21,7 +21,7 @@
 #include "io/sdf/sdf_parts.h"
 #include "record/record.h"
 
-namespace ispace {
+namespace ispace::worlds {
 
 namespace {
 
@@ -315,4 +315,4 @@ std::vector<WorldMeshCut> wallsAmong(
     return cuts;
 }
 
-}  // namespace ispace
+}  // namespace ispace::worlds

@@ -4,5 +4,5 @@
 #include "fuzz.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    tryPlan(readDxf, bytes, "plan.dxf", drawingOptions());
+    tryPlan(cad::readDxf, bytes, "plan.dxf", drawingOptions());
 }

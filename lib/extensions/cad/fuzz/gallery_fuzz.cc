@@ -4,5 +4,5 @@
 #include "fuzz.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    tryPlan(readGalleryFile, bytes, "gallery.pol");
+    tryPlan(cad::readGalleryFile, bytes, "gallery.pol");
 }

@@ -4,5 +4,5 @@
 #include "fuzz.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    tryPlan(readSvg, bytes, "plan.svg", drawingOptions());
+    tryPlan(cad::readSvg, bytes, "plan.svg", drawingOptions());
 }

@@ -25,11 +25,11 @@ const Scene& room() {
 }  // namespace
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    const std::vector<Expectation> rules = readRules(bytes, "rules.yaml");
-    for (const Expectation& rule : rules)
-        require(parseExpectation(rule.text).text == rule.text, "another sentence");
+    const std::vector<expect::Expectation> rules = expect::readRules(bytes, "rules.yaml");
+    for (const expect::Expectation& rule : rules)
+        require(expect::parseExpectation(rule.text).text == rule.text, "another sentence");
     World world(room(), std::chrono::milliseconds(200));
-    ExpectationJudge judge(world, rules);
+    expect::ExpectationJudge judge(world, rules);
     for (int step = 0; step < 20; ++step) {
         judge.observe();
         world.step();

@@ -44,7 +44,7 @@ const std::string& operand() {
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ImportOptions options;
     options.max_work.max = 2000;
-    const Document document = readSdf(bytes, operand(), options, sceneSchemas());
+    const Document document = gazebo::readSdf(bytes, operand(), options, sceneSchemas());
     checkText(document);
     tryScene(document, bytes);
 }

@@ -9,12 +9,12 @@
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     Budget work(bytes.size());
-    Building building;
+    ifc::Building building;
     try {
-        building = unpackedBuilding(packedBuilding(readBuilding(bytes, std::nullopt, work)));
+        building = ifc::unpackedBuilding(ifc::packedBuilding(ifc::readBuilding(bytes, std::nullopt, work)));
     } catch (const std::runtime_error&) {
         return;  // an answer of the reader's process
     }
     ImportRecords out(sceneSchemas(), "x.ifc", {});
-    writeStorey(building, chosenStorey(building, {}), {}, work, out);
+    ifc::writeStorey(building, ifc::chosenStorey(building, {}), {}, work, out);
 }

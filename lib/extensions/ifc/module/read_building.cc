@@ -21,8 +21,8 @@ using namespace ispace;
 std::string answer(bool is_building, const std::string& cut, std::size_t size, Budget& work) {
     const MappedInput input(size);
     try {
-        return is_building ? packedBuilding(readBuilding(input.bytes(), parseDouble(cut), work))
-                           : packedMesh(ifcMesh(input.bytes(), work));
+        return is_building ? ifc::packedBuilding(ifc::readBuilding(input.bytes(), parseDouble(cut), work))
+                           : packedMesh(ifc::ifcMesh(input.bytes(), work));
     } catch (const std::runtime_error& error) {
         if (!work.isExceeded()) throw;
         const std::string what = error.what();
@@ -34,7 +34,7 @@ std::string answer(bool is_building, const std::string& cut, std::size_t size, B
 
 int main(int argc, char** argv) {
     if (argc != 9) return 2;
-    return runConfined(argc, argv, buildingLimits(SIZE_MAX), [argv](auto size, Budget& work) {
+    return runConfined(argc, argv, ifc::buildingLimits(SIZE_MAX), [argv](auto size, Budget& work) {
         return answer(std::string_view(argv[1]) == "building", argv[2], size, work);
     });
 }

@@ -6,7 +6,7 @@
 
 #include "extensions/ifc/reader/building.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -178,4 +178,4 @@ std::map<std::string, std::size_t> unreadKinds(const Building& building) {
     return kinds;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

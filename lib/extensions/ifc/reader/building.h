@@ -14,7 +14,7 @@
 #include "base/budget.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// The cut through one product, in metres. Each part is the area that `curves` bound (even-odd)
 /// minus that of the `removed` ones; sheets are lines of surfaces without thickness.
@@ -129,4 +129,4 @@ Building unpackedBuilding(std::string_view bytes);
 Building readBuildingInChild(std::string_view bytes, const std::string& name,
                              std::optional<double> slice, Budget& work);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -6,7 +6,7 @@
 
 #include "io/packed_mesh.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Limits of lib/ispace/read-building: those of meshes, but more time, since solids of a building
 /// are cut by each other.
@@ -17,4 +17,4 @@ inline ConfinedLimits buildingLimits(std::size_t file_bytes) {
     return limits;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

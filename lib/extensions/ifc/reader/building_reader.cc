@@ -12,7 +12,7 @@
 #include "extensions/ifc/reader/ifc_frames.h"
 #include "extensions/ifc/reader/ifc_sections.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -413,4 +413,4 @@ Building readBuilding(std::string_view bytes, std::optional<double> slice, Budge
     return BuildingReader(file, slice, work).read();
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -399,4 +399,4 @@ IfcCurves::Made<IfcArea> IfcCurves::profileAt(StepId id, int depth) {
 
 std::shared_ptr<const IfcArea> IfcCurves::profile(StepId id) { return profileAt(id, 0).result; }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

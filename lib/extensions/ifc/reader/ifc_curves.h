@@ -12,7 +12,7 @@
 #include "extensions/ifc/reader/ifc_frames.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Maximum distance of chords from their arcs, in metres.
 constexpr double kIfcChordError = 5e-5;
@@ -84,4 +84,4 @@ std::vector<Point3> ifcArc(const IfcFrame& frame, double half_x, double half_y, 
 /// corners.
 Polygon ifcPolygon(const std::vector<Point3>& points);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -260,4 +260,4 @@ void IfcTree::addAreas(StepId definition, std::vector<StatedArea>& areas) const 
     }
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -12,7 +12,7 @@
 #include "extensions/ifc/reader/step_file.h"
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Reports geometry that is not read, by the name of its type.
 class UnreadGeometry : public std::runtime_error {
@@ -123,4 +123,4 @@ class IfcTree {
     std::unordered_map<StepId, std::vector<StepId>> definitions_;  // of spaces
 };
 
-}  // namespace ispace
+}  // namespace ispace::ifc

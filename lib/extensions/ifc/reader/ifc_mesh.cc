@@ -14,7 +14,7 @@
 #include "extensions/ifc/reader/ifc_shapes.h"
 #include "io/packed_mesh.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -405,4 +405,4 @@ IfcFaces ifcFaces(IfcCurves& curves, const StepInstance& item) {
     throw UnreadGeometry(type.empty() ? "a missing instance" : std::string(type));
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

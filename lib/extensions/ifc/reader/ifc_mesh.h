@@ -6,7 +6,7 @@
 #include "base/budget.h"
 #include "record/record.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Reads the surfaces of all products of an IFC file but its spaces and holes, in metres in the
 /// building's coordinates: for `mesh` records. Half-spaces and holes are not subtracted;
@@ -14,4 +14,4 @@ namespace ispace {
 /// \throws std::runtime_error for more than kMaxMeshTriangles, and as IfcShapes
 TriangleMesh ifcMesh(std::string_view bytes, Budget& work);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

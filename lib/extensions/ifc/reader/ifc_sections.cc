@@ -11,7 +11,7 @@
 #include "geom/polygon.h"
 #include "geom/predicates.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -276,4 +276,4 @@ std::optional<BuildingBox> boxAround(const IfcShape& shape, Vec2 preferred) {
     return best;
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

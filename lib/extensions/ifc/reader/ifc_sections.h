@@ -8,7 +8,7 @@
 #include "extensions/ifc/reader/building.h"
 #include "extensions/ifc/reader/ifc_shapes.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Lowest and highest corner of a shape, ignoring its cuts; low above high if it has no corners.
 struct IfcHeights {
@@ -26,4 +26,4 @@ BuildingSection sectionOf(const IfcShape& shape, double height);
 /// its floor is at most 2 % larger. std::nullopt for a shape without extent.
 std::optional<BuildingBox> boxAround(const IfcShape& shape, Vec2 preferred);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

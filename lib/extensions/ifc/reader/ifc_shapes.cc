@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -204,4 +204,4 @@ void IfcShapes::addBoolean(const StepInstance& result, Growing& shape, int depth
     append(shape, first, {});
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

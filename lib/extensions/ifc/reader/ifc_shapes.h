@@ -15,7 +15,7 @@
 #include "base/budget.h"
 #include "extensions/ifc/reader/ifc_curves.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Plane faces in space, each of one or more loops (even-odd), not necessarily closed.
 struct IfcFaces {
@@ -98,4 +98,4 @@ class IfcShapes {
 /// \throws UnreadGeometry
 IfcFaces ifcFaces(IfcCurves& curves, const StepInstance& item);
 
-}  // namespace ispace
+}  // namespace ispace::ifc

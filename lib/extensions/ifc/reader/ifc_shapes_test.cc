@@ -14,7 +14,7 @@
 #include "support/test_ifc.h"
 #include "support/test_work.h"
 
-namespace ispace {
+namespace ispace::ifc {
 namespace {
 
 /// Items of one shape: `item` is #100; #10 is the origin, #11 to #13 are the axes.
@@ -274,4 +274,4 @@ TEST(IfcShapes, LoopsOfMapsEnd) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ifc

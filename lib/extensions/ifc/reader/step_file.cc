@@ -9,7 +9,7 @@
 #include "base/message.h"
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 namespace {
 
@@ -283,4 +283,4 @@ std::string StepValue::text() const {
     return printable(out);
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -12,7 +12,7 @@
 
 #include "base/budget.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// Returns true if a STEP file begins with its magic, after blanks, comments and a byte order mark.
 bool beginsAsStep(std::string_view bytes);
@@ -101,4 +101,4 @@ class StepFile {
     mutable std::size_t reads_ = 0;
 };
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace ispace {
+namespace ispace::ifc {
 namespace {
 
 StepFile fileOf(std::string_view data) { return StepFile(data); }
@@ -86,4 +86,4 @@ TEST(StepValue, Strings) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -5,7 +5,7 @@
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     std::string again;
-    for (const std::string& tag : parseAccess(bytes))
+    for (const std::string& tag : locks::parseAccess(bytes))
         again.append(again.empty() ? "" : ",").append(tag);
     require(again == bytes, "other tags");
 }

@@ -6,5 +6,5 @@
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ImportOptions options;
     options.points = true;
-    tryPlan(readAriaMap, bytes, "plan.map", options);
+    tryPlan(maps::readAriaMap, bytes, "plan.map", options);
 }

@@ -7,9 +7,9 @@
 #include "fuzz.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    if (!isPointCloud(bytes)) return;
+    if (!meshes::isPointCloud(bytes)) return;
     Box2 bounds;
-    CloudFile(bytes, "cloud").forEach([&](Point3 p) {
+    meshes::CloudFile(bytes, "cloud").forEach([&](Point3 p) {
         require(!std::isnan(p.x) && !std::isnan(p.y) && !std::isnan(p.z), "a coordinate is NaN");
         bounds.add({p.x, p.y});
     });
@@ -20,5 +20,5 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     options.slice_walls = 0.5;
     options.slice_top = 1.5;
     options.resolution = 0.25;
-    tryPlan(readPointCloud, bytes, "cloud", options);
+    tryPlan(meshes::readPointCloud, bytes, "cloud", options);
 }

@@ -12,7 +12,7 @@
 
 #include "base/module/confine.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::optional<std::string> HandedFiles::read(const std::string& file) {
     return bytes;
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-namespace ispace {
+namespace ispace::meshes {
 
 /// An open file of known size, for assimp.
 class HandedFile : public Assimp::IOStream {
@@ -65,4 +65,4 @@ class HandedFiles : public Assimp::IOSystem {
     std::map<std::string, std::string, std::less<>> held_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::meshes

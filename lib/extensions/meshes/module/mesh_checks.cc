@@ -17,7 +17,7 @@
 #include "base/number.h"
 #include "extensions/meshes/mesh_parts.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -381,4 +381,4 @@ void checkMesh(MeshFormat format, std::string_view bytes) {
     }
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

@@ -10,7 +10,7 @@
 #include "base/budget.h"
 #include "extensions/meshes/mesh_parts.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 /// Finds the format by content, else by suffix (".obj", lower case).
 /// \throws std::runtime_error if neither is known
@@ -28,4 +28,4 @@ void checkMesh(MeshFormat format, std::string_view bytes);
 TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
                         const std::optional<std::string>& obj_up, Budget& work);
 
-}  // namespace ispace
+}  // namespace ispace::meshes

@@ -18,7 +18,7 @@
 #include "base/message.h"
 #include "base/module/confine.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -430,4 +430,4 @@ std::optional<PlainGltf> plainGltf(MeshFormat format, std::string_view bytes,
     }
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

@@ -11,7 +11,7 @@
 #include "base/budget.h"
 #include "extensions/meshes/mesh_parts.h"
 
-namespace ispace {
+namespace ispace::meshes {
 
 /// Reads a buffer that the file names by its URI; std::nullopt if there is none.
 using ReadBuffer = std::function<std::optional<std::string>(const std::string& uri)>;
@@ -39,4 +39,4 @@ struct PlainGltf {
 std::optional<PlainGltf> plainGltf(MeshFormat format, std::string_view bytes,
                                    const ReadBuffer& read_buffer, Budget& work);
 
-}  // namespace ispace
+}  // namespace ispace::meshes

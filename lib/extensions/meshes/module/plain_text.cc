@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace ispace {
+namespace ispace::meshes {
 
 namespace {
 
@@ -40,4 +40,4 @@ std::optional<std::string> plainMeshText(MeshFormat format, std::string_view byt
     return text;
 }
 
-}  // namespace ispace
+}  // namespace ispace::meshes

@@ -22,7 +22,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     }
     while (world.waiting()) world.proceed();
     testing::MemoryBroker broker;
-    MqttBridge bridge(room.state(), std::make_unique<testing::MemoryClient>(broker), "ispace");
+    mqtt::MqttBridge bridge(room.state(), std::make_unique<testing::MemoryClient>(broker), "ispace");
     constexpr int kMaxLines = 20;
     for (int i = 0; i < kMaxLines && !bytes.empty(); ++i) {
         const std::string_view line = bytes.substr(0, bytes.find('\n'));
@@ -43,6 +43,6 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     bridge.end();
     require(broker.is_closed, "the bridge does not disconnect");
     require(broker.last("ispace/status") == "offline", "the last word is not offline");
-    for (const MqttMessage& message : broker.published)
+    for (const mqtt::MqttMessage& message : broker.published)
         require(message.topic.find_first_of("+#") == std::string::npos, "a topic with a wildcard");
 }

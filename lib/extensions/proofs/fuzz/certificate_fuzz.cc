@@ -46,16 +46,16 @@ double areaOfLayout(bool is_one = false) {
 void ispace::fuzz::tryInput(std::string_view bytes) {
     constexpr double kRounding = 1e-6;
     static const double known = areaOfLayout();
-    const PoseCertificate read = readCertificate(bytes, "c");
-    const std::string text = certificateText(read, {"arrange"});
-    const PoseCertificate again = readBack([&] { return readCertificate(text, "c"); });
-    require(certificateText(again, {"arrange"}) == text, "another certificate after writing it");
+    const proofs::PoseCertificate read = proofs::readCertificate(bytes, "c");
+    const std::string text = proofs::certificateText(read, {"arrange"});
+    const proofs::PoseCertificate again = readBack([&] { return proofs::readCertificate(text, "c"); });
+    require(proofs::certificateText(again, {"arrange"}) == text, "another certificate after writing it");
     // No trees prove less than a layout sees.
-    const auto refuses = [&read](const PoseGoal& goal, double area) {
-        PoseCertificate low = read;
+    const auto refuses = [&read](const proofs::PoseGoal& goal, double area) {
+        proofs::PoseCertificate low = read;
         low.bound = std::min(read.bound, area - 2 * kRounding);
-        const CertificateCheck check =
-            checkCertificate({&kRoom, 1}, kCells, kSector, 2, goal, low, "c");
+        const proofs::CertificateCheck check =
+            proofs::checkCertificate({&kRoom, 1}, kCells, kSector, 2, goal, low, "c");
         require(check.boxes == read.boxes.size(), "boxes were not read");
         return check.refused != 0 && check.bound > low.bound;
     };
@@ -63,6 +63,6 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     // One pose twice, and the same by weight.
     static const double twice = areaOfLayout(true);
     require(refuses({.times = 2}, twice), "a bound below a layout, twice");
-    const PoseGoal doubled{2, {.elsewhere = 0, .pieces = {{{{0, 0}, {6, 0}, {6, 6}, {0, 6}}, 2}}}};
+    const proofs::PoseGoal doubled{2, {.elsewhere = 0, .pieces = {{{{0, 0}, {6, 0}, {6, 6}, {0, 6}}, 2}}}};
     require(refuses(doubled, 2 * twice), "a bound below a layout by weight");
 }

@@ -36,10 +36,10 @@ JobResults emptyResults() {
     return {"-", job, {}, false};
 }
 
-PoseBound goOn(JobResults& results, int sensors) {
+proofs::PoseBound goOn(JobResults& results, int sensors) {
     const poses::PoseFloor floor({&kRoom, 1}, kCells);
     StopSoon progress;
-    return boundOverPoses(floor, {2.5, 2, 0},
+    return proofs::boundOverPoses(floor, {2.5, 2, 0},
                           {.sensors = sensors,
                            .found = kFound,
                            .max_bytes = std::size_t{1} << 22U,
@@ -66,7 +66,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     state += bytes.substr(1);
     JobResults results = emptyResults();
     results.store("posestate1", state);
-    const PoseBound ended = goOn(results, is_three ? 3 : 2);
+    const proofs::PoseBound ended = goOn(results, is_three ? 3 : 2);
     require(std::isfinite(ended.bound), "a bound that is no number");
     require(ended.bound >= std::max(kFound, ended.found.area), "a bound below a layout");
 }

@@ -14,7 +14,7 @@
 #include "extensions/proofs/gallery/witness_sets.h"
 #include "geom/predicates.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -207,4 +207,4 @@ GalleryCover guardGallery(std::span<const Region> floor, Progress& progress) {
     return GallerySolver(floor, progress).solve();
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

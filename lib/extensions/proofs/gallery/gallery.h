@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 /// A cover of the floor, and a proof that no smaller one exists.
 struct GalleryCover {
@@ -47,4 +47,4 @@ struct GalleryCover {
 /// \throws FormatError (without a line number) for views that cross by the million
 GalleryCover guardGallery(std::span<const Region> floor, Progress& progress);
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -14,7 +14,7 @@
 #include "geom/visibility/visibility.h"
 #include "support/test_problems.h"
 
-namespace ispace {
+namespace ispace::proofs {
 namespace {
 
 GalleryCover guarded(const Polygon& outline, const std::vector<Polygon>& holes = {}) {
@@ -193,4 +193,4 @@ TEST(Gallery, StoppedKeepsAnHonestInterval) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "extensions/proofs/certificate_lines.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -127,4 +127,4 @@ GuardCertificate readGuardCertificate(std::string_view text, const std::string& 
     return certificate;
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -12,7 +12,7 @@
 
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 struct GalleryCover;
 
@@ -55,4 +55,4 @@ bool isOfGuards(std::string_view certificate);
 /// \throws FormatError
 GuardCertificate readGuardCertificate(std::string_view text, const std::string& name);
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -11,7 +11,7 @@
 #include "extensions/proofs/gallery/gallery.h"
 #include "extensions/proofs/gallery/guard_certificate.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -353,4 +353,4 @@ GuardCertificate certifyGuards(const GalleryCover& cover) {
     return certificate;
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

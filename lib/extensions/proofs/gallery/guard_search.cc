@@ -11,7 +11,7 @@
 #include "extensions/proofs/gallery/gallery.h"
 #include "geom/arrangement.h"
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 namespace {
 
@@ -160,4 +160,4 @@ void GuardSearch::complete(Found& found) {
     found.guards.erase(std::unique(found.guards.begin(), found.guards.end()), found.guards.end());
 }
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

@@ -13,7 +13,7 @@
 #include "extensions/proofs/gallery/view_cells.h"
 #include "extensions/proofs/gallery/witness_sets.h"
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 /// A point that may become a guard, in scaled units.
 struct GuardCandidate {
@@ -75,4 +75,4 @@ class GuardSearch {
     std::vector<std::vector<std::uint32_t>> seen_;  // rows, by candidate; ascending
 };
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

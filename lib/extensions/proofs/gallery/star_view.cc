@@ -8,7 +8,7 @@
 #include "geom/arrangement.h"
 #include "geom/predicates.h"
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 namespace {
 
@@ -271,4 +271,4 @@ std::optional<std::vector<Window>> Floor::windowsOf(const VisibleRegion& region)
     return windows;
 }
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

@@ -11,7 +11,7 @@
 #include "geom/polygon.h"
 #include "geom/visibility/visibility.h"
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 /// The floor is scaled by a power of two so that its largest coordinate is about this: then
 /// kRayEpsilon, within which walls do not block the view, is 1e-10 of it.
@@ -109,4 +109,4 @@ class Floor {
     VisibilityMap map_;
 };
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 namespace {
 
@@ -102,4 +102,4 @@ void ViewCells::mark(std::span<const Segment2> segments) {
     }
 }
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

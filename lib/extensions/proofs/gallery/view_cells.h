@@ -9,7 +9,7 @@
 
 #include "extensions/proofs/gallery/star_view.h"
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 /// Finds the views that may hold a point: square cells over the floor, each with the views that
 /// come within kClearance of it.
@@ -47,4 +47,4 @@ class ViewCells {
     std::vector<std::vector<std::uint32_t>> cells_;  // by column, ascending
 };
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

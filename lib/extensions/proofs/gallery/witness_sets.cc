@@ -15,7 +15,7 @@
 #include "extensions/proofs/gallery/view_cells.h"
 #include "geom/spatial_index.h"
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 namespace {
 
@@ -174,4 +174,4 @@ std::optional<std::vector<WitnessSet>> largestWitnessSets(const Floor& floor,
     return largest(distinct(std::move(seen), vertices), witnesses.size());
 }
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "extensions/proofs/gallery/star_view.h"
 
-namespace ispace::gallery {
+namespace ispace::proofs::gallery {
 
 /// A point whose guard must be seen, in scaled units.
 struct Witness {
@@ -46,4 +46,4 @@ std::optional<std::vector<WitnessSet>> largestWitnessSets(const Floor& floor,
 std::vector<WindowVertex> windowVertices(const Floor& floor, std::span<const Witness> witnesses,
                                          const Progress& progress);
 
-}  // namespace ispace::gallery
+}  // namespace ispace::proofs::gallery

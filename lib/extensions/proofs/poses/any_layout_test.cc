@@ -20,7 +20,7 @@
 #include "geom/predicates.h"
 #include "support/test_problems.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -225,4 +225,4 @@ TEST(AnyLayout, OneThatSeesAllNeedsNoOther) {
 }
 
 }  // namespace
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -6,7 +6,7 @@
 
 #include "extensions/proofs/poses/box_views.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// The common view of all poses of one box.
 class CommonSight {
@@ -173,4 +173,4 @@ BoxCore CommonSight::core() {
 
 BoxCore BoxViews::coreOf(const PoseBox& box) const { return CommonSight(*this, box).core(); }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -8,7 +8,7 @@
 
 #include "extensions/proofs/poses/box_views.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 namespace {
 
@@ -135,4 +135,4 @@ double BoxViews::sharedBy(std::span<const Placed> sensors, std::size_t times, do
     return bound;
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

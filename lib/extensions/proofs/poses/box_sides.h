@@ -6,7 +6,7 @@
 
 #include "extensions/proofs/poses/convex.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 using Convex = Outline;
 
@@ -45,4 +45,4 @@ inline void keepInside(Convex& polygon, const Side2& side) {
     polygon.swap(kept);
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 double BoxSums::outside(std::uint32_t box, const Marks& marks) const {
     const CheckedBox& own = boxes_[box];
@@ -101,4 +101,4 @@ double BoxSums::boundOf(std::span<const std::uint32_t> boxes, double enough, int
     return most;
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

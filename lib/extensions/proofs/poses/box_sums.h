@@ -10,7 +10,7 @@
 
 #include "extensions/proofs/poses/box_views.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// A box of a certificate's tree, in pre-order; its second half follows the subtree of the first,
 /// which is the next box.
@@ -58,4 +58,4 @@ class BoxSums {
     double times_;
 };
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <utility>
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// The view of one box.
 class BoxSight {
@@ -372,4 +372,4 @@ double BoxViews::unionOf(std::span<const Known> known,
                   }) / kParts;
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

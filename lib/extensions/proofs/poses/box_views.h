@@ -12,7 +12,7 @@
 #include "extensions/proofs/poses/box_sides.h"
 #include "extensions/proofs/poses/outer_bound.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// All that some pose of a box sees, as parts of cells.
 struct BoxView {
@@ -125,4 +125,4 @@ class BoxViews {
     std::vector<std::uint16_t> most_;  // parts that are floor, layer by layer
 };
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

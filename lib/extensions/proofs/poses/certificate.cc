@@ -8,7 +8,7 @@
 #include "base/number.h"
 #include "extensions/proofs/certificate_lines.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -63,4 +63,4 @@ PoseCertificate readCertificate(std::string_view text, const std::string& name) 
     return certificate;
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -12,7 +12,7 @@
 #include "extensions/proofs/poses/outer_bound.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 /// The area that a proof bounds.
 struct PoseGoal {
@@ -60,4 +60,4 @@ CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t mos
                                   const poses::Sector& sector, int sensors, const PoseGoal& goal,
                                   const PoseCertificate& certificate, const std::string& name);
 
-}  // namespace ispace
+}  // namespace ispace::proofs

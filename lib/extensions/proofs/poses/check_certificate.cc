@@ -14,7 +14,7 @@
 #include "extensions/proofs/poses/certificate.h"
 #include "extensions/proofs/poses/pose_search.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 namespace {
 
@@ -272,4 +272,4 @@ CertificateCheck checkCertificate(std::span<const Region> floor, std::size_t mos
         .check();
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -17,7 +17,7 @@
 #include "geom/visibility/visibility.h"
 #include "support/test_problems.h"
 
-namespace ispace {
+namespace ispace::proofs {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -326,4 +326,4 @@ TEST(BoxViews, AreNoLargerThanThoseOfTheSearch) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 void clip(Outline& polygon, const HalfPlane& half, Outline& spare) {
     const std::size_t n = polygon.size();
@@ -48,4 +48,4 @@ HalfPlane aroundBox(const Box2& box, Vec2 normal) {
 
 HalfPlane behindBox(const Box2& box, Vec2 normal) { return aroundBox(box, -normal).opposite(); }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

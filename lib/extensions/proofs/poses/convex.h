@@ -6,7 +6,7 @@
 
 #include "geom/polygon.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// The points p with dot(normal, p) <= reach.
 struct HalfPlane {
@@ -38,4 +38,4 @@ HalfPlane aroundBox(const Box2& box, Vec2 normal);
 /// Returns the half-plane of this outward normal that touches the box and holds no more of it.
 HalfPlane behindBox(const Box2& box, Vec2 normal);
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

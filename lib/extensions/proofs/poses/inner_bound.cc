@@ -9,7 +9,7 @@
 #include "extensions/proofs/poses/convex.h"
 #include "geom/predicates.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 namespace {
 
@@ -210,4 +210,4 @@ std::vector<std::uint8_t> innerBoundOf(const PoseFloor& floor, const Sector& sec
     return InnerBound(floor, sector, box).compute();
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -7,7 +7,7 @@
 
 #include "extensions/proofs/poses/outer_bound.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// Computes parts of cells that every pose of the box on the floor sees, rounded down: those seen
 /// from all of the rectangle through the same portals of the triangulation, within range of all its
@@ -16,4 +16,4 @@ namespace ispace::poses {
 std::vector<std::uint8_t> innerBoundOf(const PoseFloor& floor, const Sector& sector,
                                        const PoseBox& box);
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -13,7 +13,7 @@
 #include "extensions/proofs/test_pose_floors.h"
 #include "geom/visibility/visibility.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -160,4 +160,4 @@ TEST(InnerBound, OfTheCheckEndsWhereLinesOfSightEnd) {
 }
 
 }  // namespace
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -8,7 +8,7 @@
 
 #include "base/simd.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 struct MultipleBound::Dense {
     std::array<std::vector<std::uint8_t>, kMaxBoxes> fat, core;
@@ -173,4 +173,4 @@ double MultipleBound::ofCentres(std::span<const BoxId> boxes) const {
     });
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

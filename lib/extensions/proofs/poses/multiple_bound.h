@@ -10,7 +10,7 @@
 
 #include "extensions/proofs/poses/pose_boxes.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// Largest number of sensors of a tuple.
 constexpr std::size_t kMaxBoxes = 4;
@@ -61,4 +61,4 @@ class MultipleBound {
     std::vector<Prices> cell_prices_;  // q with r = 0
 };
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -14,7 +14,7 @@
 #include "extensions/proofs/test_pose_floors.h"
 #include "support/test_problems.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -207,4 +207,4 @@ TEST(MultipleBound, TheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -9,7 +9,7 @@
 
 #include "extensions/proofs/poses/convex.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 namespace {
 
@@ -298,4 +298,4 @@ double fatAreaOf(const PoseFloor& floor, const Sector& sector, const PoseBox& bo
     return WeakView(floor, sector, box, nullptr).compute().value_or(0);
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

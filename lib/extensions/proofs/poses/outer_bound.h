@@ -13,7 +13,7 @@
 #include "extensions/proofs/poses/convex.h"
 #include "geom/polygon.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// Fractions of a cell are counted in these parts: two of them add up within a byte.
 constexpr int kParts = 127;
@@ -178,4 +178,4 @@ OuterBound outerBoundOf(const PoseFloor& floor, const Sector& sector, const Pose
 /// no floor.
 double fatAreaOf(const PoseFloor& floor, const Sector& sector, const PoseBox& box);
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -13,7 +13,7 @@
 #include "extensions/proofs/test_pose_floors.h"
 #include "geom/visibility/visibility.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -120,4 +120,4 @@ TEST(OuterBound, AFieldOfAHalfTurnWithItsHeadings) {
 }
 
 }  // namespace
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

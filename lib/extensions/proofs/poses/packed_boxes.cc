@@ -9,7 +9,7 @@
 
 #include "extensions/proofs/poses/pose_boxes.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 namespace {
 
@@ -69,4 +69,4 @@ void PoseBoxes::addMissingViews(std::vector<BoxId> ids) {
     tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) { addViews(boxes_[ids[i]]); });
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -10,7 +10,7 @@
 #include "base/simd.h"
 #include "extensions/proofs/poses/inner_bound.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 namespace {
 
@@ -353,4 +353,4 @@ std::string PoseBoxes::text() const {
     return text;
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -12,7 +12,7 @@
 #include "base/packed.h"
 #include "extensions/proofs/poses/outer_bound.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 using BoxId = std::uint32_t;
 
@@ -136,4 +136,4 @@ class PoseBoxes {
     std::size_t bytes_ = 0;
 };
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

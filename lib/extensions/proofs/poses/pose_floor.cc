@@ -8,7 +8,7 @@
 #include "extensions/proofs/poses/outer_bound.h"
 #include "geom/arrangement.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 bool Sector::isRound() const { return field >= 2 * std::numbers::pi - 1e-9; }
 
@@ -228,4 +228,4 @@ void PoseFloor::Tally::roundDown(std::vector<std::uint8_t>& parts) const {
     convert(parts, [](double sum) { return std::floor(std::max(0.0, sum + kNoShare) * kParts); });
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -11,7 +11,7 @@
 #include "extensions/proofs/poses/pose_searcher.h"
 #include "extensions/proofs/poses/pose_share.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 double PoseSearcher::boundOf(const Tuple& tuple, double enough) const {
     return options_.times > 1 ? multiple_.of(boxesOf(tuple), enough) : unionBoundOf(tuple, enough);
@@ -226,9 +226,9 @@ PoseBound PoseSearcher::run() {
     return {bound, found_, boxes_.size(), tuples_, is_complete_};
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses
 
-namespace ispace {
+namespace ispace::proofs {
 
 PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sector,
                          const PoseSearchOptions& options, Progress& progress) {
@@ -243,4 +243,4 @@ PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sec
     return proof;
 }
 
-}  // namespace ispace
+}  // namespace ispace::proofs

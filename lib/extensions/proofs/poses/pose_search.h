@@ -16,7 +16,7 @@
 #include "extensions/proofs/poses/outer_bound.h"
 #include "geom/pose.h"
 
-namespace ispace {
+namespace ispace::proofs {
 
 /// Poses of all sensors, and the area that they see, m2.
 struct PosedLayout {
@@ -80,4 +80,4 @@ constexpr int kMaxPosed = 4;
 PoseBound boundOverPoses(const poses::PoseFloor& floor, const poses::Sector& sector,
                          const PoseSearchOptions& options, Progress& progress);
 
-}  // namespace ispace
+}  // namespace ispace::proofs

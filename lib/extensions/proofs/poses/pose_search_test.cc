@@ -16,7 +16,7 @@
 #include "geom/visibility/visibility.h"
 #include "support/test_problems.h"
 
-namespace ispace {
+namespace ispace::proofs {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -201,4 +201,4 @@ TEST(PoseSearch, AFloorWithoutAreaIsSeenByNone) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::proofs

@@ -17,7 +17,7 @@
 #include "extensions/proofs/poses/pose_search.h"
 #include "extensions/proofs/poses/sum_bound.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 struct Tuple {
     double bound = 0;
@@ -126,4 +126,4 @@ class PoseSearcher {
     bool is_kept_ = false;     // false also if single views were cut short
 };
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

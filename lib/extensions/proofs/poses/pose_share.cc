@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 namespace {
 
@@ -112,4 +112,4 @@ PoseBound joinedProof(const PoseShare& share, std::uint64_t mark, int sensors, d
     return all;
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

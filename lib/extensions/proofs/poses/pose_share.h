@@ -8,7 +8,7 @@
 #include "base/packed.h"
 #include "extensions/proofs/poses/pose_search.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// Computes a fingerprint of the floor, the sensors and the options that decide the proof.
 std::uint64_t markOf(const PoseFloor& floor, const Sector& sector,
@@ -30,4 +30,4 @@ void storeProof(const PoseShare& share, std::uint64_t mark, std::uint64_t dealt,
 /// or a share of other tuples
 PoseBound joinedProof(const PoseShare& share, std::uint64_t mark, int sensors, double found);
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

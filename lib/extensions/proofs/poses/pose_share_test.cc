@@ -15,7 +15,7 @@
 #include "support/test_problems.h"
 #include "support/test_results.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 namespace {
 
 constexpr std::size_t kCells = 800;
@@ -346,4 +346,4 @@ TEST(PoseShare, MissingAndForeignPartsAreRefused) {
 }
 
 }  // namespace
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -9,7 +9,7 @@
 #include "extensions/proofs/poses/pose_searcher.h"
 #include "extensions/proofs/poses/pose_share.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 void PoseSearcher::keep() {
     if (!is_kept_) return;
@@ -111,4 +111,4 @@ void PoseSearcher::unpackTuples(Unpacker& from) {
     boxes_.addMissingViews(std::move(open));
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -16,7 +16,7 @@
 #include "geom/overlay/overlay.h"
 #include "support/test_problems.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -323,4 +323,4 @@ TEST(PoseWeights, SumsOverSensorsHoldWhatTheySee) {
 }
 
 }  // namespace
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

@@ -8,7 +8,7 @@
 
 #include "base/simd.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 namespace {
 
@@ -183,4 +183,4 @@ void SumBound::lower(std::vector<Bounded>& tuples, double enough) {
     boxes_.splitWithLarge(std::move(whole));
 }
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

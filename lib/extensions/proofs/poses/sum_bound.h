@@ -11,7 +11,7 @@
 
 #include "extensions/proofs/poses/pose_boxes.h"
 
-namespace ispace::poses {
+namespace ispace::proofs::poses {
 
 /// Bounds the area that at least `times` of the sensors see, at any poses in their boxes, by a
 /// maximum for each sensor by itself. Subdivisions of the boxes then cost the sum of their parts,
@@ -57,4 +57,4 @@ class SumBound {
     std::size_t times_;
 };
 
-}  // namespace ispace::poses
+}  // namespace ispace::proofs::poses

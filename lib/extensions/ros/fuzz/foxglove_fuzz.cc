@@ -16,5 +16,5 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         require(!message.empty() && message[0] >= 1 && message[0] <= 4, "an unknown opcode");
         require(message[0] != 2 || message.size() == kTime, "a time of another length");
     };
-    talkAboutTopics<FoxgloveDialogue>(bytes, check, std::string("room"), std::string("1"));
+    talkAboutTopics<ros::FoxgloveDialogue>(bytes, check, std::string("room"), std::string("1"));
 }

@@ -13,10 +13,10 @@
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ServedRoom room;
-    RosFeed feed(room.state(), {});
+    ros::RosFeed feed(room.state(), {});
     auto made = std::make_unique<testing::FakeParticipant>();
     testing::FakeParticipant& dds = *made;
-    RosNode node(room.state(), feed, std::move(made));
+    ros::RosNode node(room.state(), feed, std::move(made));
     const auto step = [&] {
         room.simulation().allow(1);
         room.run([&] { node.stepped(); });
@@ -35,7 +35,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
             dds.end("rt/r1/initialpose").arrived.push_back({std::string(message)});
         } else if (letter == 'm') {
             dds.end("rq/simrun/set_parametersRequest")
-                .arrived.push_back({std::string(message), DdsRequest{{1}, 1}});
+                .arrived.push_back({std::string(message), ros::DdsRequest{{1}, 1}});
         } else if (letter == 'r') {
             for (auto& [number, end] : dds.ends) end.is_read = !end.is_read;
         } else {

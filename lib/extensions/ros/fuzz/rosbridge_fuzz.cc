@@ -13,5 +13,5 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
                     : json::from_cbor(message, true, false, json::cbor_tag_handler_t::ignore);
         require(answer.is_object() && answer.contains("op"), "bytes that are no answer");
     };
-    talkAboutTopics<RosbridgeDialogue>(bytes, check);
+    talkAboutTopics<ros::RosbridgeDialogue>(bytes, check);
 }

@@ -18,7 +18,7 @@ namespace ispace::fuzz {
 template <typename Dialogue, typename... Arguments, typename Check>
 void talkAboutTopics(std::string_view bytes, Check check, const Arguments&... arguments) {
     ServedRoom room;
-    RosFeed feed(room.state(), {.map =
+    ros::RosFeed feed(room.state(), {.map =
                                     [](const Scene&) {
                                         return RosGrid{{}, 1, 1, {0}};
                                     },

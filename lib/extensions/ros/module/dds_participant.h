@@ -14,7 +14,7 @@
 
 #include "server/network.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// A topic as DDS knows it: "rt/scan", "sensor_msgs::msg::dds_::LaserScan_".
 struct DdsTopic {
@@ -78,4 +78,4 @@ class DdsParticipant {
 using OpenDds = void(const DdsSettings& settings, std::unique_ptr<DdsParticipant>& out);
 constexpr const char* kOpenDds = "ispaceOpenDds";
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -20,7 +20,7 @@
 #error "this source was written for Cyclone DDS 0.10"
 #endif
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -226,4 +226,4 @@ DdsMessage messageOf(const ddsi_serdata* message) {
     return {std::string(contentOf(own(message))), own(message).request};
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -10,7 +10,7 @@
 struct ddsi_sertype;
 struct ddsi_serdata;
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Largest message that is accepted from peers.
 constexpr std::size_t kMaxDdsMessage = std::size_t{1} << 18U;
@@ -22,4 +22,4 @@ ddsi_serdata* newOpaqueMessage(const ddsi_sertype* type, std::string_view bytes)
 /// Returns a message of dds_takecdr().
 DdsMessage messageOf(const ddsi_serdata* message);
 
-}  // namespace ispace
+}  // namespace ispace::ros

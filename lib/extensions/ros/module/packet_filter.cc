@@ -15,7 +15,7 @@
 #include <system_error>
 #include <vector>
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -99,4 +99,4 @@ void admitOnly(std::span<const Network> allowed) {
     }
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

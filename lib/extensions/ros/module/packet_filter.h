@@ -5,7 +5,7 @@
 
 #include "server/network.h"
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Makes the kernel drop the packets that reach UDP sockets of this process, unless they come from
 /// this machine or an allowed network: Cyclone binds its sockets to all addresses. Packets over the
@@ -13,4 +13,4 @@ namespace ispace {
 /// \throws std::system_error
 void admitOnly(std::span<const Network> allowed);
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -32,7 +32,7 @@
 extern "C" int ddsi_delete_proxy_participant_by_guid(ddsi_domaingv* domain, const ddsi_guid* guid,
                                                      ddsrt_wctime_t timestamp, int is_implicit);
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -400,9 +400,9 @@ class Participant final : public DdsParticipant {
 
 }  // namespace
 
-}  // namespace ispace
+}  // namespace ispace::ros
 
 extern "C" __attribute__((visibility("default"))) void ispaceOpenDds(
-    const ispace::DdsSettings& settings, std::unique_ptr<ispace::DdsParticipant>& out) {
+    const ispace::ros::DdsSettings& settings, std::unique_ptr<ispace::ros::DdsParticipant>& out) {
     out = std::make_unique<ispace::Participant>(settings);
 }

@@ -20,7 +20,7 @@ using os_sockWaitsetCtx = struct SockWaitsetCtx*;  // NOLINT(readability-identif
 #include <cstring>
 #include <span>
 
-namespace ispace {
+namespace ispace::ros {
 
 namespace {
 
@@ -143,4 +143,4 @@ void declareRequests(ddsi_domaingv* domain) {
     }
 }
 
-}  // namespace ispace
+}  // namespace ispace::ros

@@ -11,7 +11,7 @@
 struct ddsi_domaingv;
 struct nn_rdata;
 
-namespace ispace {
+namespace ispace::ros {
 
 /// Returns the identity that an answer to a received request has to name: the caller's reader of
 /// answers and the number of the request. Empty if the request names no reader.
@@ -27,4 +27,4 @@ constexpr std::size_t kMaxWithRequest = 14'000;
 /// them as the beginning of the content.
 void declareRequests(ddsi_domaingv* domain);
 
-}  // namespace ispace
+}  // namespace ispace::ros

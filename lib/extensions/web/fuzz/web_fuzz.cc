@@ -34,7 +34,7 @@ class Browser {
         boost::asio::ip::tcp::socket socket(io_);
         socket.assign(boost::asio::ip::tcp::v4(), ends[1]);
         page_.settle("127.0.0.1", 8000);
-        connection_ = serveBrowser(std::move(socket), page_, room_.state().limits());
+        connection_ = web::serveBrowser(std::move(socket), page_, room_.state().limits());
     }
     ~Browser() {
         connection_->close();
@@ -83,9 +83,9 @@ class Browser {
     }
 
     fuzz::ServedRoom room_;
-    WebPage page_{room_.state(), "room.env", {}};
+    web::WebPage page_{room_.state(), "room.env", {}};
     boost::asio::io_context io_;
-    std::shared_ptr<WebConnection> connection_;
+    std::shared_ptr<web::WebConnection> connection_;
     int end_ = -1;
     std::string received_;
 };

@@ -6,5 +6,5 @@
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ImportOptions options;
     options.max_work.max = 4000;
-    tryPlan(readWebots, bytes, "w.wbt", options);
+    tryPlan(webots::readWebots, bytes, "w.wbt", options);
 }

@@ -7,7 +7,7 @@
 void ispace::fuzz::tryInput(std::string_view bytes) {
     static RoomHost host("laser id=l1 at=0,0 fov=270 step=0.5 range=20 rate=50\n");
     const std::size_t piece = takePieceSize(bytes);
-    ColaSession whole(host, "l1"), cut(host, "l1");
+    wire::ColaSession whole(host, "l1"), cut(host, "l1");
     const std::string wanted = answered(whole, bytes, std::string_view::npos);
     require(answered(cut, bytes, piece) == wanted, "other answers to pieces");
     if (whole.closing()) return;

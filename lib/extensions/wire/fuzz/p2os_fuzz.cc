@@ -9,10 +9,10 @@ namespace {
 using namespace ispace;
 
 void checkWhole(const std::string& out) {
-    P2osParser parser;
+    wire::P2osParser parser;
     parser.append(out);
     std::size_t bytes = 0;
-    while (const auto packet = parser.take()) bytes += p2osBytes(packet->id, packet->data).size();
+    while (const auto packet = parser.take()) bytes += wire::p2osBytes(packet->id, packet->data).size();
     fuzz::require(bytes == out.size(), "bytes that are no packet");
 }
 
@@ -24,7 +24,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     RoomHost host(
         "robot id=r1 at=0,0 sonar=0.1,0,0;0,0.1,90 sonar_range=3 bumpers=-30,30;150,210\n"
         "laser id=l1 on=r1 at=0.1,0,0.3 range=0.02,3\n");
-    P2osSession whole(host, "r1"), cut(host, "r1");
+    wire::P2osSession whole(host, "r1"), cut(host, "r1");
     const std::string wanted = answered(whole, bytes, std::string_view::npos);
     checkWhole(wanted);
     require(answered(cut, bytes, piece) == wanted, "other answers to pieces");

@@ -20,7 +20,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     static RoomHost host(
         "laser id=l1 at=0,0 first=-119.53125 step=0.3515625 beams=682 range=0.06,4.095\n");
     const std::size_t piece = takePieceSize(bytes);
-    ScipSession whole(host, "l1"), cut(host, "l1");
+    wire::ScipSession whole(host, "l1"), cut(host, "l1");
     const std::string wanted = answered(whole, bytes, std::string_view::npos);
     checkWhole(wanted);
     require(answered(cut, bytes, piece) == wanted, "other answers to pieces");

@@ -14,7 +14,7 @@
 namespace ispace::fuzz {
 
 /// A room in which each client may hold each device.
-class RoomHost : public WireHost {
+class RoomHost : public wire::WireHost {
   public:
     /// \param layout records
     explicit RoomHost(const std::string& layout) : room_(layout) {}
@@ -35,7 +35,7 @@ class RoomHost : public WireHost {
 };
 
 /// Returns the answer of a session to bytes in pieces of this size, read meanwhile.
-inline std::string answered(WireSession& session, std::string_view bytes, std::size_t piece) {
+inline std::string answered(wire::WireSession& session, std::string_view bytes, std::size_t piece) {
     std::string out;
     while (!bytes.empty() && !session.closing()) {
         session.receive(bytes.substr(0, piece));
