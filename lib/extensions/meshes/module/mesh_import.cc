@@ -103,10 +103,10 @@ class Gatherer {
         while (!open.empty()) {
             const auto [node, depth] = open.back();
             open.pop_back();
-            if (++nodes > meshes::kMaxMeshNodes)
-                fail("more than " + std::to_string(meshes::kMaxMeshNodes) + " nodes");
-            if (depth > meshes::kMaxMeshNodeDepth)
-                fail("nodes nested more than " + std::to_string(meshes::kMaxMeshNodeDepth) + " deep");
+            if (++nodes > kMaxMeshNodes)
+                fail("more than " + std::to_string(kMaxMeshNodes) + " nodes");
+            if (depth > kMaxMeshNodeDepth)
+                fail("nodes nested more than " + std::to_string(kMaxMeshNodeDepth) + " deep");
             for (unsigned i = 0; i < node->mNumMeshes; ++i) {
                 const aiMesh& part = partOf(*node, i);
                 triangles += part.mNumFaces;
@@ -233,10 +233,10 @@ void clean(TriangleMesh& mesh) {
 }
 
 /// One of the suffixes by which assimp knows its importer, without the dot.
-std::string suffixOf(meshes::MeshFormat format) {
+std::string suffixOf(MeshFormat format) {
     const auto* const known =
         std::find_if(kMeshSuffixes.begin(), kMeshSuffixes.end(),
-                     [format](const meshes::MeshSuffix& row) { return row.format == format; });
+                     [format](const MeshSuffix& row) { return row.format == format; });
     return std::string(known->suffix.substr(1));
 }
 
@@ -255,26 +255,26 @@ void leaveOnly(const std::string& suffix, Assimp::Importer& importer) {
 
 }  // namespace
 
-TriangleMesh meshes::importMesh(meshes::MeshFormat format, std::size_t size, const std::string& up,
+TriangleMesh importMesh(MeshFormat format, std::size_t size, const std::string& up,
                         const std::optional<std::string>& obj_up, Budget& work) {
     Assimp::Importer importer;
     // Materials of OBJ have no say in where triangles are.
-    const bool reads_side_files = format == meshes::MeshFormat::Gltf || format == meshes::MeshFormat::Glb;
-    std::optional<meshes::PlainGltf> plain;
+    const bool reads_side_files = format == MeshFormat::Gltf || format == MeshFormat::Glb;
+    std::optional<PlainGltf> plain;
     if (reads_side_files) {
-        meshes::HandedFiles buffers(size, suffixOf(format), true);
-        plain = meshes::plainGltf(
+        HandedFiles buffers(size, suffixOf(format), true);
+        plain = plainGltf(
             format, MappedInput(size).bytes(),
             [&buffers](const std::string& uri) { return buffers.read(uri); }, work);
     }
-    const std::string suffix = suffixOf(plain ? meshes::MeshFormat::Gltf : format);
+    const std::string suffix = suffixOf(plain ? MeshFormat::Gltf : format);
     leaveOnly(suffix, importer);
-    auto files = std::make_unique<meshes::HandedFiles>(size, suffix, reads_side_files);
+    auto files = std::make_unique<HandedFiles>(size, suffix, reads_side_files);
     if (plain) {
         files->hold(files->name(), std::move(plain->json));
         for (auto& [uri, bytes] : plain->buffers) files->hold(uri, std::move(bytes));
     }
-    if (auto text = meshes::plainMeshText(format, MappedInput(size).bytes()))
+    if (auto text = plainMeshText(format, MappedInput(size).bytes()))
         files->hold(files->name(), *std::move(text));
     const std::string name = files->name();
     importer.SetIOHandler(files.release());

@@ -404,5 +404,5 @@ class Participant final : public DdsParticipant {
 
 extern "C" __attribute__((visibility("default"))) void ispaceOpenDds(
     const ispace::ros::DdsSettings& settings, std::unique_ptr<ispace::ros::DdsParticipant>& out) {
-    out = std::make_unique<ispace::Participant>(settings);
+    out = std::make_unique<ispace::ros::Participant>(settings);
 }
