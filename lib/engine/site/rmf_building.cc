@@ -362,12 +362,11 @@ StoreyedDocument readRmfSite(const YamlNode& top, const std::string& operand,
         record.set("id", id);
         if (id != level.name) record.set("name", level.name);
         record.set("z", level.elevation);
-        double above = 0;
+        std::optional<double> above;
         for (const RmfLevel& other : levels)
-            if (other.elevation > level.elevation && (above == 0 || other.elevation < above))
+            if (other.elevation > level.elevation && (!above || other.elevation < *above))
                 above = other.elevation;
-        if (above > level.elevation)
-            record.set("height", wholeMicrometres(above - level.elevation));
+        if (above) record.set("height", wholeMicrometres(*above - level.elevation));
         const Pose2& frame = level.building_from_level;
         record.set("at",
                    Tuple{wholeMicrometres(frame.position.x), wholeMicrometres(frame.position.y)});
