@@ -60,7 +60,8 @@ Scene withBeams(const Scene& scene, const learning::LearningTask& task, int beam
 }
 
 /// Speeds and turns as of a learner at its beginning.
-void drawActions(const learning::BatchArrays& arrays, std::size_t rows, learning::EpisodeRandom& random) {
+void drawActions(const learning::BatchArrays& arrays, std::size_t rows,
+                 learning::EpisodeRandom& random) {
     for (std::size_t row = 0; row < rows; ++row) {
         arrays.actions[2 * row] = static_cast<float>(random.unit());
         arrays.actions[2 * row + 1] = static_cast<float>(2 * random.unit() - 1);
@@ -76,9 +77,11 @@ void runBatch(benchmark::State& state, const Case& of) {
     setting.rooms.push_back(
         std::make_unique<learning::LearningRoom>(withBeams(roomOf(of.room), task, of.beams), task));
     const auto worlds = static_cast<std::size_t>(of.worlds);
-    const learning::VectorSegment segment("ispace-bench-" + std::to_string(getpid()), setting, worlds, "");
+    const learning::VectorSegment segment("ispace-bench-" + std::to_string(getpid()), setting,
+                                          worlds, "");
     const learning::BatchArrays& arrays = segment.arrays();
-    learning::LearningBatch batch(std::move(setting), worlds, learning::AutoReset::NextStep, arrays);
+    learning::LearningBatch batch(std::move(setting), worlds, learning::AutoReset::NextStep,
+                                  arrays);
     for (std::size_t i = 0; i < worlds; ++i) {
         arrays.seeds[i] = i;
         arrays.masks[i] = static_cast<std::uint8_t>(learning::ResetMask::Seed);

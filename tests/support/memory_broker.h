@@ -19,8 +19,9 @@ struct MemoryBroker {
 
     /// The last payload of a topic; "" without.
     [[nodiscard]] std::string last(const std::string& topic) const {
-        const auto found = std::find_if(published.rbegin(), published.rend(),
-                                        [&](const mqtt::MqttMessage& m) { return m.topic == topic; });
+        const auto found =
+            std::find_if(published.rbegin(), published.rend(),
+                         [&](const mqtt::MqttMessage& m) { return m.topic == topic; });
         return found == published.rend() ? "" : found->payload;
     }
 };

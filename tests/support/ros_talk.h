@@ -33,7 +33,8 @@ template <typename Dialogue>
 class RosTalk {
   public:
     template <typename... Arguments>
-    explicit RosTalk(const ServerLimits& limits, ros::RosScenery scenery, const Arguments&... arguments)
+    explicit RosTalk(const ServerLimits& limits, ros::RosScenery scenery,
+                     const Arguments&... arguments)
         : state(room.simulation, limits),
           feed(state, std::move(scenery)),
           dialogue(std::make_unique<Dialogue>(state, feed, arguments...)) {}

@@ -4,6 +4,8 @@
 
 namespace ispace::extension {
 
-Extension advice() { return {.name = "advice", .coverage = advice::makeAdvice, .record = advice::makeRunAdvice}; }
+Extension advice() {
+    return {.name = "advice", .coverage = advice::makeAdvice, .record = advice::makeRunAdvice};
+}
 
 }  // namespace ispace::extension

@@ -67,7 +67,8 @@ std::map<std::string, std::vector<reality::LogScan*>> scansBySource(reality::Log
 }
 
 /// Takes over the beams that the log states, and the scans. \throws FormatError
-void takeScans(const std::string& log, std::span<reality::LogScan* const> scans, CalibratedLaser& laser) {
+void takeScans(const std::string& log, std::span<reality::LogScan* const> scans,
+               CalibratedLaser& laser) {
     const reality::LogScan& first = *scans.front();
     const std::size_t beams = first.ranges.size();
     auto& model = laser.seen.sensor.as<Laser>();
@@ -131,7 +132,8 @@ template <typename Source>
 std::vector<CalibratedCamera> fixedCameras(const TaskInput& task, const Source& source,
                                            const reality::Log& log) {
     std::map<std::string, std::vector<const reality::LogPicture*>> pictures;
-    for (const reality::LogPicture& picture : log.pictures) pictures[picture.sensor].push_back(&picture);
+    for (const reality::LogPicture& picture : log.pictures)
+        pictures[picture.sensor].push_back(&picture);
     std::vector<CalibratedCamera> cameras;
     if (pictures.empty()) return cameras;
     auto fixed = fixedSensors(source, "camera");
@@ -190,8 +192,9 @@ class LaserPairs {
     }
 
   private:
-    [[noreturn]] void refuse(const std::vector<CalibratedLaser>& lasers,
-                             const std::map<std::string, std::vector<reality::LogScan*>>& sources) const {
+    [[noreturn]] void refuse(
+        const std::vector<CalibratedLaser>& lasers,
+        const std::map<std::string, std::vector<reality::LogScan*>>& sources) const {
         std::vector<std::string> ids, names;
         for (const CalibratedLaser& laser : lasers) ids.push_back(laser.seen.sensor.id);
         for (const auto& [source, scans] : sources) names.push_back(printable(source));
@@ -661,7 +664,8 @@ class Calibration final : public OptionGroup {
         if (read.kind != DocumentKind::Layout)
             throw UsageError(byWhat() + " wants a LAYOUT, and " + displayName(task.operands[0]) +
                              " is none");
-        reality::Log log = reality::readLog(log_, target.isPerson() ? reality::LogPictures::Keep : reality::LogPictures::Skip);
+        reality::Log log = reality::readLog(
+            log_, target.isPerson() ? reality::LogPictures::Keep : reality::LogPictures::Skip);
         std::vector<CalibratedLaser> lasers = LaserPairs(task, log).of(fixedLasers(read));
         std::vector<CalibratedCamera> cameras = fixedCameras(task, read, log);
         std::vector<WatchingLaser> seen;

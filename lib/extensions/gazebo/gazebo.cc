@@ -104,7 +104,7 @@ class SdfReader {
         if (!node) return;
         const std::string_view kind = node.name();
         worlds::WorldShape shape{worlds::WorldBox(), pose, around.model,
-                         around.line == 0 ? files_.lineOf(node) : around.line};
+                                 around.line == 0 ? files_.lineOf(node) : around.line};
         files_.spend(node, kShapeWork);
         if (kind == "box") {
             const std::vector<double> size = files_.numbersIn(node, "size", 3);
@@ -113,11 +113,12 @@ class SdfReader {
             shape.shape = worlds::WorldBox{{size[0], size[1], size[2]}};
         } else if (kind == "cylinder" || kind == "cone") {
             // A cone stands on floor that its base covers.
-            shape.shape =
-                worlds::WorldCylinder{files_.lengthIn(node, "radius"), files_.lengthIn(node, "length")};
+            shape.shape = worlds::WorldCylinder{files_.lengthIn(node, "radius"),
+                                                files_.lengthIn(node, "length")};
         } else if (kind == "capsule") {
             const double radius = files_.lengthIn(node, "radius");
-            shape.shape = worlds::WorldCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
+            shape.shape =
+                worlds::WorldCylinder{radius, files_.lengthIn(node, "length") + 2 * radius};
         } else if (kind == "sphere") {
             const double radius = files_.lengthIn(node, "radius");
             shape.shape = worlds::WorldCylinder{radius, 2 * radius};
@@ -162,7 +163,8 @@ class SdfReader {
         found_.shapes.push_back(std::move(shape));
     }
 
-    void addUnread(const std::string& kind, const worlds::WorldShape& shape, const Transform& pose) {
+    void addUnread(const std::string& kind, const worlds::WorldShape& shape,
+                   const Transform& pose) {
         ++found_.left_out[kind];
         found_.unread.push_back({kind,
                                  {},

@@ -4,6 +4,8 @@
 
 namespace ispace::extension {
 
-Extension learning() { return {.name = "learning", .options = {{"simrun", learning::makeLearning}}}; }
+Extension learning() {
+    return {.name = "learning", .options = {{"simrun", learning::makeLearning}}};
+}
 
 }  // namespace ispace::extension

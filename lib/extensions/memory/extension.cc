@@ -7,7 +7,9 @@
 namespace ispace::extension {
 
 Extension memory() {
-    return {.name = "memory", .add = [] { addSceneSchemas(memory::volumeSchemas()); }, .role = memory::makeMemory};
+    return {.name = "memory",
+            .add = [] { addSceneSchemas(memory::volumeSchemas()); },
+            .role = memory::makeMemory};
 }
 
 }  // namespace ispace::extension

@@ -7,7 +7,9 @@
 namespace ispace::extension {
 
 Extension nodes() {
-    return {.name = "nodes", .add = [] { addSceneSchemas(nodes::nodeSchemas()); }, .role = nodes::makeNodes};
+    return {.name = "nodes",
+            .add = [] { addSceneSchemas(nodes::nodeSchemas()); },
+            .role = nodes::makeNodes};
 }
 
 }  // namespace ispace::extension

@@ -5,7 +5,9 @@
 namespace ispace::extension {
 
 Extension presence() {
-    return {.name = "presence", .objective = presence::makePresenceObjective, .coverage = presence::makePresence};
+    return {.name = "presence",
+            .objective = presence::makePresenceObjective,
+            .coverage = presence::makePresence};
 }
 
 }  // namespace ispace::extension

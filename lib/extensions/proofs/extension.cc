@@ -5,8 +5,9 @@
 namespace ispace::extension {
 
 Extension proofs() {
-    return {
-        .name = "proofs", .options = {{"arrange", proofs::makeCertificateCheck}}, .proof = proofs::makePosesProof};
+    return {.name = "proofs",
+            .options = {{"arrange", proofs::makeCertificateCheck}},
+            .proof = proofs::makePosesProof};
 }
 
 }  // namespace ispace::extension

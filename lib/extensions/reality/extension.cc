@@ -4,6 +4,8 @@
 
 namespace ispace::extension {
 
-Extension reality() { return {.name = "reality", .options = {{"scan", reality::makeRealityOptions}}}; }
+Extension reality() {
+    return {.name = "reality", .options = {{"scan", reality::makeRealityOptions}}};
+}
 
 }  // namespace ispace::extension

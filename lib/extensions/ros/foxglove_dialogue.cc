@@ -144,7 +144,7 @@ void FoxgloveDialogue::advertiseServices() {
 }
 
 web::WebMessage FoxgloveDialogue::write(std::uint32_t key, const RosFeed::Entry& /*topic*/,
-                                   const RosMessage& message) {
+                                        const RosMessage& message) {
     std::string head = binary(FoxgloveOpcode::Message);
     appendLittle(head, key);
     appendLittle(head, message.time());

@@ -65,7 +65,7 @@ class RosDialogue : public web::WebDialogue {
 
     /// Writes a message for the client. \param key of the subscription
     virtual web::WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
-                             const RosMessage& message) = 0;
+                                  const RosMessage& message) = 0;
     /// Reports a failure that answers no request.
     virtual void tell(Level level, const std::string& text) = 0;
     /// Call after topics have come or gone. Subscriptions to removed topics are already gone.
@@ -111,7 +111,7 @@ class RosDialogue : public web::WebDialogue {
     std::map<std::uint32_t, std::uint32_t> keys_;  // of subscriptions, by topic
     std::list<Queued> queue_;                      // oldest first
     std::size_t queue_bytes_ = 0;
-    std::deque<web::WebMessage> out_;               // answers, sent before the queue
+    std::deque<web::WebMessage> out_;          // answers, sent before the queue
     std::size_t out_bytes_ = 0, largest_ = 0;  // of one answer so far
     std::int64_t version_;                     // of the feed's topics
 };

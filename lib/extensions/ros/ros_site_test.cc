@@ -56,7 +56,8 @@ TEST_F(RosSites, ChooseAProtocol) {
 }
 
 TEST_F(RosSites, OtherPagesNeedTheToken) {
-    const web::WebRequest stranger{.target = "/", .origin = "http://evil.example", .protocols = kBoth};
+    const web::WebRequest stranger{
+        .target = "/", .origin = "http://evil.example", .protocols = kBoth};
     EXPECT_EQ(open({}, stranger), 403U);
     web::WebRequest known = stranger;
     known.target = "/?token=x";

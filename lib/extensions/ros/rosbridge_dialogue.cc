@@ -125,7 +125,7 @@ RosbridgeDialogue::Form RosbridgeDialogue::formOf(const Wish::Ids& ids) {
 
 /// Clients find their topic by the name that they asked for.
 web::WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::Entry& topic,
-                                    const RosMessage& message) {
+                                         const RosMessage& message) {
     const auto wish = wishes_.find(topic.channel.topic);
     if (wish == wishes_.end()) return publication(topic.channel.topic, Form::Json, message);
     std::vector<web::WebMessage> all;
@@ -140,8 +140,8 @@ web::WebMessage RosbridgeDialogue::write(std::uint32_t /*key*/, const RosFeed::E
 
 /// Returns a message, or the fragments of its text if that is longer than they shall be.
 std::vector<web::WebMessage> RosbridgeDialogue::publications(const std::string& name,
-                                                        const Wish::Ids& ids,
-                                                        const RosMessage& message) {
+                                                             const Wish::Ids& ids,
+                                                             const RosMessage& message) {
     std::vector<web::WebMessage> out;
     out.push_back(publication(name, formOf(ids), message));
     std::size_t size = 0;
@@ -164,7 +164,7 @@ std::vector<web::WebMessage> RosbridgeDialogue::publications(const std::string& 
 }
 
 web::WebMessage RosbridgeDialogue::publication(const std::string& name, Form form,
-                                          const RosMessage& message) {
+                                               const RosMessage& message) {
     if (form == Form::Json || form == Form::Png) {
         JsonWriter head;
         head.beginObject().key("op").value("publish").key("topic").value(name).key("msg");

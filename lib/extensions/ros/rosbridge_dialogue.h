@@ -53,10 +53,11 @@ class RosbridgeDialogue final : public RosDialogue {
     struct Op;
 
     web::WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
-                     const RosMessage& message) override;
-    static web::WebMessage publication(const std::string& name, Form form, const RosMessage& message);
+                          const RosMessage& message) override;
+    static web::WebMessage publication(const std::string& name, Form form,
+                                       const RosMessage& message);
     std::vector<web::WebMessage> publications(const std::string& name, const Wish::Ids& ids,
-                                         const RosMessage& message);
+                                              const RosMessage& message);
     void tell(Level level, const std::string& text) override { tell(level, text, ""); }
     void tell(Level level, const std::string& text, const std::string& id);
     void topicsChanged() override;

@@ -157,7 +157,8 @@ TEST(TrackDemand, CoastsOverShortGapsOnly) {
 
 TEST(TrackDemand, NoCoastOverAJump) {
     MomentSampler sampler;
-    for (int i = 0; i < 10; ++i) sampler.add("ann", i * presence::kPathStep, {i < 5 ? -3.0 : 90.0, 0});
+    for (int i = 0; i < 10; ++i)
+        sampler.add("ann", i * presence::kPathStep, {i < 5 ? -3.0 : 90.0, 0});
     const TrackDemand demand(sampler.finish(), {.coast = 60});
     const Scene scene = roomScene(kTwoRooms);
     EXPECT_NEAR(demand.lossOf(servedIn(scene, laserAt({-2, 0}), demand)).time, 1, 1e-9);

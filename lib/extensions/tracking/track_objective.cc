@@ -38,15 +38,16 @@ class TrackObjective : public ObjectiveGroup {
         const CommonOptions& common, std::vector<std::string>& files) const override {
         LossRule loss = loss_;
         loss.plane = how.plane;
-        const std::vector<presence::RoomPaths> ways = presence::waysIn(site, "--ways", ways_, common.seed, how.plane);
+        const std::vector<presence::RoomPaths> ways =
+            presence::waysIn(site, "--ways", ways_, common.seed, how.plane);
         std::vector<std::shared_ptr<const Demand>> demands;
         for (std::size_t i = 0; i < ways.size(); ++i) {
             MomentSampler sampler;
             if (!ways[i].isEmpty())
                 presence::visitPaths(ways[i].choice, *site.rooms()[i], ways[i].seed,
-                           [&sampler](const std::string& id, double time, Point2 place) {
-                               sampler.add(id, time, place);
-                           });
+                                     [&sampler](const std::string& id, double time, Point2 place) {
+                                         sampler.add(id, time, place);
+                                     });
             if (!ways_.record.empty()) {
                 const RecordedFiles record(ways[i].choice.record);
                 files.push_back(record.robots);

@@ -286,8 +286,8 @@ class WebotsReader {
         }
         Transform pose = around.frame.pose;
         if (is_ball) pose.linear().setIdentity();
-        add(node,
-            {worlds::WorldCylinder{scale.x() * radius, scale.z() * height}, pose, around.model, node.line});
+        add(node, {worlds::WorldCylinder{scale.x() * radius, scale.z() * height}, pose,
+                   around.model, node.line});
     }
 
     void addUnread(const std::string& kind, const VrmlNode& node, const WebotsContext& around,
@@ -442,8 +442,9 @@ class WebotsReader {
     }
 
     /// Returns the opening in a Door or Window, between the posts of its frame.
-    [[nodiscard]] std::optional<worlds::WorldOpening> openingOf(const VrmlNode& node, const Vector3d& scale,
-                                                        const WallSizes& sizes) const {
+    [[nodiscard]] std::optional<worlds::WorldOpening> openingOf(const VrmlNode& node,
+                                                                const Vector3d& scale,
+                                                                const WallSizes& sizes) const {
         if (node.type == "Wall") return std::nullopt;
         worlds::WorldOpening opening;
         opening.width = scale.y() * (sizes.size[1] - 2 * sizes.frame[1]);
@@ -487,8 +488,8 @@ Document readWebots(std::string_view bytes, const std::string& name, const Impor
     ImportRecords out(schemas, name, options);
     Budget work(bytes.size(), options.max_work);
     withFileName(name, [&] {
-        worlds::writeWorldRoom(WebotsReader(bytes, name, work, out).read(), name, options, schemas, work,
-                       out);
+        worlds::writeWorldRoom(WebotsReader(bytes, name, work, out).read(), name, options, schemas,
+                               work, out);
     });
     return out.take();
 }

@@ -162,7 +162,8 @@ TEST(wire::DevicePort, NeedsSuchADevice) {
     }
     EXPECT_EQ(wire::refusalOfSensor(room.world, "laser", "l1"), "");
     EXPECT_EQ(wire::refusalOfSensor(room.world, "laser", "xyz"), "no laser `xyz`, there is l1, l2");
-    EXPECT_EQ(wire::refusalOfSensor(room.world, "camera", "l1"), "no camera `l1`: the scene has none");
+    EXPECT_EQ(wire::refusalOfSensor(room.world, "camera", "l1"),
+              "no camera `l1`: the scene has none");
 }
 
 TEST(wire::DevicePort, ServesSoManyAndNoMore) {

@@ -3,4 +3,6 @@
 #include "extensions/cad/cad.h"
 #include "fuzz.h"
 
-void ispace::fuzz::tryInput(std::string_view bytes) { tryPlan(cad::readHouseExpo, bytes, "plan.json"); }
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    tryPlan(cad::readHouseExpo, bytes, "plan.json");
+}

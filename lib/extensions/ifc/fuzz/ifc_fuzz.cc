@@ -11,7 +11,8 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     Budget work(bytes.size());
     ifc::Building building;
     try {
-        building = ifc::unpackedBuilding(ifc::packedBuilding(ifc::readBuilding(bytes, std::nullopt, work)));
+        building = ifc::unpackedBuilding(
+            ifc::packedBuilding(ifc::readBuilding(bytes, std::nullopt, work)));
     } catch (const std::runtime_error&) {
         return;  // an answer of the reader's process
     }

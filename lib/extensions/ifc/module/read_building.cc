@@ -21,8 +21,9 @@ using namespace ispace;
 std::string answer(bool is_building, const std::string& cut, std::size_t size, Budget& work) {
     const MappedInput input(size);
     try {
-        return is_building ? ifc::packedBuilding(ifc::readBuilding(input.bytes(), parseDouble(cut), work))
-                           : packedMesh(ifc::ifcMesh(input.bytes(), work));
+        return is_building
+                   ? ifc::packedBuilding(ifc::readBuilding(input.bytes(), parseDouble(cut), work))
+                   : packedMesh(ifc::ifcMesh(input.bytes(), work));
     } catch (const std::runtime_error& error) {
         if (!work.isExceeded()) throw;
         const std::string what = error.what();

@@ -3,4 +3,6 @@
 #include "extensions/maps/maps.h"
 #include "fuzz.h"
 
-void ispace::fuzz::tryInput(std::string_view bytes) { tryPlan(maps::readGridMap, bytes, "plan.map"); }
+void ispace::fuzz::tryInput(std::string_view bytes) {
+    tryPlan(maps::readGridMap, bytes, "plan.map");
+}

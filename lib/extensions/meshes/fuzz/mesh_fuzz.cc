@@ -23,7 +23,9 @@ std::string suffixOf(std::string_view bytes) {
     if (bytes.starts_with("{")) return ".gltf";
     if (bytes.starts_with("<")) return ".dae";
     if (bytes.starts_with("ply")) return ".ply";
-    return meshes::meshFormatOf(bytes) == meshes::MeshFormat::Stl || bytes.starts_with("solid") ? ".stl" : ".obj";
+    return meshes::meshFormatOf(bytes) == meshes::MeshFormat::Stl || bytes.starts_with("solid")
+               ? ".stl"
+               : ".obj";
 }
 
 std::ptrdiff_t openFiles() {

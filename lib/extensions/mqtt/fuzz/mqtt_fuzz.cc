@@ -22,7 +22,8 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     }
     while (world.waiting()) world.proceed();
     testing::MemoryBroker broker;
-    mqtt::MqttBridge bridge(room.state(), std::make_unique<testing::MemoryClient>(broker), "ispace");
+    mqtt::MqttBridge bridge(room.state(), std::make_unique<testing::MemoryClient>(broker),
+                            "ispace");
     constexpr int kMaxLines = 20;
     for (int i = 0; i < kMaxLines && !bytes.empty(); ++i) {
         const std::string_view line = bytes.substr(0, bytes.find('\n'));

@@ -48,8 +48,10 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     static const double known = areaOfLayout();
     const proofs::PoseCertificate read = proofs::readCertificate(bytes, "c");
     const std::string text = proofs::certificateText(read, {"arrange"});
-    const proofs::PoseCertificate again = readBack([&] { return proofs::readCertificate(text, "c"); });
-    require(proofs::certificateText(again, {"arrange"}) == text, "another certificate after writing it");
+    const proofs::PoseCertificate again =
+        readBack([&] { return proofs::readCertificate(text, "c"); });
+    require(proofs::certificateText(again, {"arrange"}) == text,
+            "another certificate after writing it");
     // No trees prove less than a layout sees.
     const auto refuses = [&read](const proofs::PoseGoal& goal, double area) {
         proofs::PoseCertificate low = read;
@@ -63,6 +65,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     // One pose twice, and the same by weight.
     static const double twice = areaOfLayout(true);
     require(refuses({.times = 2}, twice), "a bound below a layout, twice");
-    const proofs::PoseGoal doubled{2, {.elsewhere = 0, .pieces = {{{{0, 0}, {6, 0}, {6, 6}, {0, 6}}, 2}}}};
+    const proofs::PoseGoal doubled{
+        2, {.elsewhere = 0, .pieces = {{{{0, 0}, {6, 0}, {6, 6}, {0, 6}}, 2}}}};
     require(refuses(doubled, 2 * twice), "a bound below a layout by weight");
 }

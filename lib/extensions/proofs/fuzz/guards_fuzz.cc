@@ -19,11 +19,14 @@ const std::vector<Point2> kGuards = {{0.5, 0.5}, {5.5, 0.5}};
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     constexpr double kRounding = 1e-9;
-    require(!proofs::isOfGuards(bytes) || bytes.find("guards ") != bytes.npos, "no number of guards");
+    require(!proofs::isOfGuards(bytes) || bytes.find("guards ") != bytes.npos,
+            "no number of guards");
     const proofs::GuardCertificate read = proofs::readGuardCertificate(bytes, "c");
     const std::string text = proofs::certificateText(read, {"arrange"});
-    const proofs::GuardCertificate again = readBack([&] { return proofs::readGuardCertificate(text, "c"); });
-    require(proofs::certificateText(again, {"arrange"}) == text, "another certificate after writing it");
+    const proofs::GuardCertificate again =
+        readBack([&] { return proofs::readGuardCertificate(text, "c"); });
+    require(proofs::certificateText(again, {"arrange"}) == text,
+            "another certificate after writing it");
     const proofs::GuardCheck check = proofs::checkGuards({&kArms, 1}, kGuards, read, "c");
     require(check.bound <= kGuards.size(), "a bound above a cover");
     require(check.missed < kRounding, "a cover misses floor");

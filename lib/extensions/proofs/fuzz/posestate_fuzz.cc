@@ -40,12 +40,12 @@ proofs::PoseBound goOn(JobResults& results, int sensors) {
     const poses::PoseFloor floor({&kRoom, 1}, kCells);
     StopSoon progress;
     return proofs::boundOverPoses(floor, {2.5, 2, 0},
-                          {.sensors = sensors,
-                           .found = kFound,
-                           .max_bytes = std::size_t{1} << 22U,
-                           .singles = 20,
-                           .share = {.results = &results}},
-                          progress);
+                                  {.sensors = sensors,
+                                   .found = kFound,
+                                   .max_bytes = std::size_t{1} << 22U,
+                                   .singles = 20,
+                                   .share = {.results = &results}},
+                                  progress);
 }
 
 /// The state of a search that was stopped.

@@ -5,8 +5,8 @@
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     const reality::Log log = bytes.starts_with("\x89MCAP") ? reality::readMcapLog(bytes, "a.mcap")
-                    : bytes.starts_with('{')      ? reality::readScanLines(bytes, "a.jsonl")
-                                                  : reality::readCarmenLog(bytes, "a.log");
+                             : bytes.starts_with('{') ? reality::readScanLines(bytes, "a.jsonl")
+                                                      : reality::readCarmenLog(bytes, "a.log");
     require(!log.scans.empty() || !log.clouds.empty() || !log.bursts.empty(), "an empty log");
     for (const reality::LogScan& scan : log.scans) {
         require(!scan.ranges.empty(), "a scan without beams");

@@ -19,10 +19,10 @@ template <typename Dialogue, typename... Arguments, typename Check>
 void talkAboutTopics(std::string_view bytes, Check check, const Arguments&... arguments) {
     ServedRoom room;
     ros::RosFeed feed(room.state(), {.map =
-                                    [](const Scene&) {
-                                        return RosGrid{{}, 1, 1, {0}};
-                                    },
-                                .room = [](const Scene&) { return std::string("glTF"); }});
+                                         [](const Scene&) {
+                                             return RosGrid{{}, 1, 1, {0}};
+                                         },
+                                     .room = [](const Scene&) { return std::string("glTF"); }});
     Dialogue dialogue(room.state(), feed, arguments...);
     const auto collect = [&] {
         for (auto message = dialogue.next(); message; message = dialogue.next())

@@ -12,7 +12,8 @@ void checkWhole(const std::string& out) {
     wire::P2osParser parser;
     parser.append(out);
     std::size_t bytes = 0;
-    while (const auto packet = parser.take()) bytes += wire::p2osBytes(packet->id, packet->data).size();
+    while (const auto packet = parser.take())
+        bytes += wire::p2osBytes(packet->id, packet->data).size();
     fuzz::require(bytes == out.size(), "bytes that are no packet");
 }
 
