@@ -272,6 +272,14 @@ TEST_F(SimAria, CommandsOfTheFirmwareMoveIt) {
     robot.com2Bytes(ArCommands::VEL2, 5, 5);
     ArUtil::sleep(1000);
     EXPECT_EQ(robot.getVel(), 100);
+    // The high byte is the left wheel's: it turns to the left, then to the right.
+    robot.com2Bytes(ArCommands::VEL2, -1, 1);
+    ArUtil::sleep(1500);
+    EXPECT_EQ(robot.getVel(), 0);
+    EXPECT_GT(robot.getRotVel(), 0);
+    robot.com2Bytes(ArCommands::VEL2, 2, static_cast<char>(-2));
+    ArUtil::sleep(1500);
+    EXPECT_LT(robot.getRotVel(), 0);
     robot.com(ArCommands::STOP);
     ArUtil::sleep(1500);
     EXPECT_EQ(robot.getVel(), 0);

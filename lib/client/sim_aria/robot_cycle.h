@@ -410,10 +410,12 @@ inline bool ArRobot::comInt(unsigned char command, short argument) {
     return true;
 }
 
-/// VEL2 has the speeds of the wheels in units of 20 mm/s.
+/// VEL2 has the speeds of the wheels in units of 20 mm/s: the left one's is the high byte, with a
+/// sign whether or not `char` has one.
 inline bool ArRobot::com2Bytes(unsigned char command, char high, char low) {
     const std::lock_guard<std::recursive_mutex> hold(myMutex);
-    if (command == ArCommands::VEL2) setVel2(20.0 * low, 20.0 * high);
+    if (command == ArCommands::VEL2)
+        setVel2(20.0 * static_cast<signed char>(high), 20.0 * static_cast<signed char>(low));
     return myLink != nullptr;
 }
 
