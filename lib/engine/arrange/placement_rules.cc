@@ -203,10 +203,10 @@ class SiteReader {
 
     void readLine(std::string_view line) {
         ++line_;
-        const char* const begin = line.data();
         constexpr std::string_view kMark =
             "\xef\xbb\xbf";  // byte order mark that some editors write
         if (line_ == 1 && line.starts_with(kMark)) line.remove_prefix(kMark.size());
+        const char* const begin = line.data();
         line = trimmed(line.substr(0, line.find('#')));
         if (line.empty()) return;
         const char* const start = line.data();

@@ -294,6 +294,10 @@ TEST(ReadSites, SaysWhereAndWhatIsWrong) {
     EXPECT_EQ(findingsOf("1,2,3, 4\n"),
               "sites.csv:1:8: error: 4 fields, a line is x,y or x,y,heading\n");
     EXPECT_EQ(findingsOf("1,\n"), "sites.csv:1:3: error: y is missing\n");
+    // A byte order mark takes up no column.
+    EXPECT_EQ(findingsOf("\xef\xbb\xbf"
+                         "1,a\n"),
+              "sites.csv:1:3: error: y `a` is no number\n");
     EXPECT_EQ(findingsOf("nan,1\n"), "sites.csv:1:1: error: x `nan` is no number\n");
     EXPECT_EQ(findingsOf("1,1e7\n"),
               "sites.csv:1:3: error: y `1e7` is too large: a million at most\n");
