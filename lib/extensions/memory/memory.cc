@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <list>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -324,13 +325,15 @@ class Memory : public RoleService {
     /// left.
     void tellState(const std::string& id, const Volume* volume) {
         const bool is_touched = !run_.touches.tagsIn(id).empty();
-        const bool was_touched = touched_.contains(id);
-        if (is_touched == was_touched) return;
+        const auto known = touched_.find(id);
+        if (is_touched == (known != touched_.end())) return;
+        // Meanwhile it may have been forgotten, or stored in another room.
+        const std::size_t number = is_touched ? volume->room : known->second;
         if (is_touched)
-            touched_.insert(id);
+            touched_.emplace(id, number);
         else
-            touched_.erase(id);
-        const Run::Room& room = run_.rooms[volume == nullptr ? 0 : volume->room];
+            touched_.erase(known);
+        const Run::Room& room = run_.rooms[number];
         const std::string prefix = room.id + "/";
         room.simulation->events().tell(
             {.kind = EventKind::State,
@@ -342,7 +345,7 @@ class Memory : public RoleService {
 
     Run run_;
     std::list<MemoryClient*> clients_;
-    std::set<std::string> touched_;  // volumes
+    std::map<std::string, std::size_t> touched_;  // rooms of volumes, by id
 };
 
 }  // namespace

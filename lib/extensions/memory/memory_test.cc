@@ -238,6 +238,49 @@ TEST_F(MemoryTest, KeepsAndFindsContents) {
     EXPECT_EQ(ask(memory, "SCAN hand").substr(0, 10), "SCAN hand ");
 }
 
+TEST(Memory, TellsOfAForgottenVolumeInItsRoom) {
+    const Scene ground = sceneOf("volume id=news at=0,0\n");
+    const Scene upper = sceneOf(
+        "ultrasound at=-3,-2,2.7 tilt=-90 range=9 fov=170\n"
+        "ultrasound at=3,-2,2.6 tilt=-90 range=9 fov=170\n"
+        "ultrasound at=3,2,2.7 tilt=-90 range=9 fov=170\n"
+        "ultrasound at=-3,2,2.5 tilt=-90 range=9 fov=170\n"
+        "tag id=hand at=0,0,1.3 rate=20\n"
+        "volume id=mail at=0,0,1.3\n");
+    World low(ground, std::chrono::milliseconds(5)), high(upper, std::chrono::milliseconds(5));
+    Simulation below(low, {}, parseClock("step"), std::nullopt);
+    Simulation above(high, {}, parseClock("step"), std::nullopt);
+    const RunRoom rooms[] = {{"ground", &below}, {"upper", &above}};
+    const auto service = makeMemory(rooms, 1);
+    const auto run = [&] {
+        for (int i = 0; i < 200; ++i) {
+            for (const RunRoom& room : rooms) {
+                room.simulation->allow(1);
+                room.simulation->run(std::chrono::steady_clock::now(), std::chrono::seconds(1));
+            }
+            service->stepped();
+        }
+    };
+    const auto states = [](Simulation& simulation) {
+        EventLog& events = simulation.events();
+        std::string text;
+        for (auto i = events.first(); i < events.next(); ++i)
+            text.append(events.at(i).id).append("=").append(events.at(i).text).append(" ");
+        return text;
+    };
+    below.events().want({EventKind::State});
+    above.events().want({EventKind::State});
+    std::string answer;
+    const auto client = service->take("*", answer);
+    run();
+    EXPECT_EQ(states(above), "mail=1 ");
+    const std::string_view forget[] = {"FORGET", "upper/mail"};
+    EXPECT_EQ(client->request(forget).line, "OK FORGET upper/mail\n");
+    run();
+    EXPECT_EQ(states(above), "mail=1 mail=0 ");
+    EXPECT_EQ(states(below), "");
+}
+
 TEST(Memory, IsNoneWithoutVolumesAndTags) {
     const Scene scene = sceneOf("robot id=r1 at=0,0\n");
     World world(scene, std::chrono::milliseconds(5));
