@@ -42,6 +42,16 @@ class HeadsThatTurn(unittest.TestCase):
             with self.assertRaisesRegex(ispace.Refused, "pan goes from -90 to 90"):
                 heads.turn("h", 100)
 
+    def test_wait_is_for_the_last_turn(self):
+        with self.server.heads() as heads, self.server.world() as world:
+            heads.turn("h", 90)
+            world.advance(1.5)
+            heads.turn("h", 0)
+            with self.assertRaises(ispace.Timeout):
+                heads.wait("h", timeout=0.3)
+            world.advance(1.5)
+            heads.wait("h", timeout=10)
+
     def test_programs_set_its_angles(self):
         with self.server.world() as world:
             world.act("h", "pan", 30)

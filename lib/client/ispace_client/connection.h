@@ -73,6 +73,12 @@ class Connection {
     bool nextEnd(Message& message, double timeout) { return next(ends_, message, timeout); }
     bool nextEvent(Message& message, double timeout) { return next(events_, message, timeout); }
     bool nextScan(Message& message, double timeout) { return next(scans_, message, timeout); }
+    /// Takes the next event that has been received, without waiting. \return false if there is none
+    bool storedEvent(Message& message) {
+        if (events_.empty()) return false;
+        message = pop(events_);
+        return true;
+    }
     /// Drops unread scans of a stream.
     void dropScans() { scans_.clear(); }
 

@@ -2,6 +2,7 @@
 #ifndef ISPACE_CLIENT_HEADS_H
 #define ISPACE_CLIENT_HEADS_H
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,13 @@ class Heads {
 
     /// Turns a head to these angles, degrees, at its speed. Returns the seconds that it takes.
     double turn(const std::string& head, double pan, double tilt) {
-        return connection_.ask("TURN " + head + ' ' + textOf(pan) + ' ' + textOf(tilt))
-            .fields.number("for");
+        const Message answer =
+            connection_.ask("TURN " + head + ' ' + textOf(pan) + ' ' + textOf(tilt));
+        // Events before the answer are of earlier turns.
+        Message event;
+        while (connection_.storedEvent(event)) note(event);
+        turned_.erase(head);
+        return answer.fields.number("for");
     }
     /// Stops a head where it is.
     void halt(const std::string& head) { connection_.ask("HALT " + head); }
@@ -56,15 +62,23 @@ class Heads {
         reading.is_moving = fields.text("moving") == "1";
         return reading;
     }
-    /// Waits until a head has turned. \returns false after `timeout` seconds of wall time
+    /// Waits until the last turn of a head has ended. \returns false after `timeout` seconds of
+    /// wall time
     bool wait(const std::string& head, double timeout) {
-        Message message;
-        while (connection_.nextEvent(message, timeout))
-            if (message.word(1) == "turned" && message.fields.text("id") == head) return true;
-        return false;
+        Message event;
+        while (turned_.erase(head) == 0) {
+            if (!connection_.nextEvent(event, timeout)) return false;
+            note(event);
+        }
+        return true;
     }
 
   private:
+    void note(const Message& event) {
+        if (event.word(1) == "turned") turned_.insert(event.fields.text("id"));
+    }
+
+    std::set<std::string> turned_;  // heads whose last turn has ended, before wait()
     Connection connection_;
     std::vector<std::string> heads_;
 };

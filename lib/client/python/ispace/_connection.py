@@ -115,6 +115,13 @@ class Connection:
         """Returns the next EVENT; None after the timeout."""
         return self._next(self._events, timeout)
 
+    def stored_events(self) -> List[Message]:
+        """Takes the EVENTs that have been received, without waiting."""
+        with self._changed:
+            events = list(self._events)
+            self._events.clear()
+        return events
+
     def next_scan(self, timeout: float) -> Optional[Message]:
         """Returns the next scan of a stream; None after the timeout."""
         return self._next(self._scans, timeout)

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Set
 
 from ._connection import Address, Client
-from ._message import split, text_of
+from ._message import Message, split, text_of
 from .errors import Timeout
 
 
@@ -33,13 +34,18 @@ class Heads(Client):
         """heads: those that it turns, a pattern of ids"""
         super().__init__(f"HEAD {heads}", address, timeout, token)
         self.heads = split(self.info["heads"], ",") if self.info.get("heads") else []  #: ids
+        self._turned: Set[str] = set()  # heads whose last turn has ended, before wait()
 
     def __enter__(self) -> Heads:
         return self
 
     def turn(self, id: str, pan: float, tilt: float = 0.0) -> float:
         """Turns a head to these angles in degrees, at its speed; the seconds that it takes."""
-        return self._ask(f"TURN {id} {text_of(pan)} {text_of(tilt)}").fields.number("for")
+        answer = self._ask(f"TURN {id} {text_of(pan)} {text_of(tilt)}")
+        for event in self.connection.stored_events():  # before the answer: of earlier turns
+            self._note(event)
+        self._turned.discard(id)
+        return answer.fields.number("for")
 
     def halt(self, id: str) -> None:
         """Stops a head where it is."""
@@ -51,8 +57,13 @@ class Heads(Client):
         return HeadReading(fields["id"], fields.number("t"), fields.number("pan"), fields.number("tilt"), fields.flag("moving"))
 
     def wait(self, id: str, timeout: float = 60) -> None:
-        """Waits until a head has turned; Timeout after this many seconds of wall time."""
-        while (message := self.connection.next_event(timeout)) is not None:
-            if message.word(1) == "turned" and message.fields["id"] == id:
-                return
-        raise Timeout(f"{id} does not arrive within {timeout:g} s")
+        """Waits until the last turn of a head has ended; Timeout after this many seconds of wall time."""
+        while id not in self._turned:
+            if (event := self.connection.next_event(timeout)) is None:
+                raise Timeout(f"{id} does not arrive within {timeout:g} s")
+            self._note(event)
+        self._turned.discard(id)
+
+    def _note(self, event: Message) -> None:
+        if event.word(1) == "turned":
+            self._turned.add(event.fields["id"])
