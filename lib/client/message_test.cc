@@ -24,6 +24,16 @@ TEST(ClientMessage, ReadsNumbersInAnyLocale) {
         EXPECT_THROW(numberOf(text), ProtocolError) << text;
 }
 
+TEST(ClientMessage, IntegersAndCountsHaveTheirRange) {
+    const Fields fields = parseMessage("OK a=-3 b=- c=1e30 d=x").fields;
+    EXPECT_EQ(fields.integer("a"), -3);
+    for (const char* key : {"b", "c", "d"}) EXPECT_THROW(fields.integer(key), ProtocolError) << key;
+    EXPECT_EQ(countOf("0"), 0U);
+    EXPECT_EQ(countOf("1000000000"), 1000000000U);
+    for (const char* text : {"-1", "-", "1.5", "1e30", "x", ""})
+        EXPECT_THROW(countOf(text), ProtocolError) << text;
+}
+
 TEST(ClientMessage, WritesNumbersThatAreReadAgain) {
     EXPECT_EQ(textOf(0.3), "0.3");
     EXPECT_EQ(textOf(-90), "-90");
@@ -112,6 +122,8 @@ TEST(ClientReading, EveryKindIsRead) {
     EXPECT_EQ(burst.tags, std::vector<std::string>({"t1", "t2"}));
     EXPECT_EQ(burst.times_of_flight[0], 0.012345);
     EXPECT_TRUE(std::isinf(burst.times_of_flight[1]));
+    EXPECT_THROW(Burst::from(parseMessage("SCAN u1 t=1 seq=2 tags=t1,t2 tof=0.012345")),
+                 ProtocolError);
     EXPECT_FALSE(
         Fix::from(parseMessage("SCAN t1 t=1 seq=2 heard=2 x=- y=- z=- residual=-")).solved);
     EXPECT_EQ(Fix::from(parseMessage("SCAN t1 t=1 seq=2 heard=4 x=1 y=2 z=0.5 residual=0.01")).y,

@@ -68,13 +68,12 @@ class Floor {
         reading.time = fields.number("t");
         reading.weight = fields.number("weight");
         reading.is_occupied = fields.text("occupied") == "1";
-        reading.columns = static_cast<std::size_t>(numberOf(fields.text("columns", "0")));
-        reading.rows = static_cast<std::size_t>(numberOf(fields.text("rows", "0")));
+        reading.columns = countOf(fields.text("columns", "0"));
+        reading.rows = countOf(fields.text("rows", "0"));
         for (const std::string& cell : split(fields.text("cells", ""), ',')) {
             const std::size_t colon = cell.find(':');
             if (colon == std::string::npos) throw ProtocolError("the server sent `" + cell + "`");
-            reading.cells[static_cast<std::size_t>(numberOf(cell.substr(0, colon)))] =
-                numberOf(cell.substr(colon + 1));
+            reading.cells[countOf(cell.substr(0, colon))] = numberOf(cell.substr(colon + 1));
         }
         return reading;
     }

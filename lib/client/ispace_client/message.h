@@ -3,6 +3,7 @@
 #define ISPACE_CLIENT_MESSAGE_H
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <locale>
@@ -43,6 +44,14 @@ inline double numberOf(const std::string& text) {
     if (!(in >> value) || in.peek() != std::istringstream::traits_type::eof())
         throw ProtocolError("the server sent `" + text + "` for a number");
     return value;
+}
+
+/// Parses a number of things, or an index. \throws ProtocolError for other texts
+inline std::size_t countOf(const std::string& text) {
+    const double value = numberOf(text);
+    if (!(value >= 0 && value <= 1e9) || value != std::floor(value))
+        throw ProtocolError("the server sent `" + text + "` for a count");
+    return static_cast<std::size_t>(value);
 }
 
 /// Returns the shortest text that converts back to the same double, independent of the locale.
@@ -101,7 +110,13 @@ class Fields {
         return value ? *value : otherwise;
     }
     double number(const std::string& key) const { return numberOf(text(key)); }
-    long integer(const std::string& key) const { return std::lround(number(key)); }
+    /// \throws ProtocolError also for infinity and other numbers that no `long` can have
+    long integer(const std::string& key) const {
+        const double value = number(key);
+        if (!(std::abs(value) < static_cast<double>(std::numeric_limits<long>::max())))
+            throw ProtocolError("the server sent `" + key + '=' + text(key) + "` for an integer");
+        return std::lround(value);
+    }
     bool flag(const std::string& key) const { return text(key) == "1"; }
     /// Splits a value at commas.
     std::vector<std::string> list(const std::string& key) const { return split(text(key), ','); }

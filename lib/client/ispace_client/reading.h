@@ -162,6 +162,10 @@ struct Burst : Reading {
         static_cast<Reading&>(burst) = Reading::from(message);
         burst.tags = burst.fields.list("tags");
         burst.times_of_flight = burst.fields.numbers("tof");
+        if (burst.times_of_flight.size() != burst.tags.size())
+            throw ProtocolError("a burst of " + burst.sensor + " has " +
+                                std::to_string(burst.times_of_flight.size()) + " times for " +
+                                std::to_string(burst.tags.size()) + " tags");
         return burst;
     }
 };
