@@ -27,16 +27,19 @@ char lowerCase(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A'
 
 /// Letters of Latin-1 with diacritics, U+00C0 to U+00FF in UTF-8, transcribed: "Küche" is "Kueche".
 std::string withPlainLetters(std::string_view text) {
+    // Large and small letters have the same row, except the last: ß and ÿ.
     constexpr std::array<const char*, 32> kPlain{
         "a", "a", "a", "a", "ae", "a", "ae", "c", "e", "e", "e", "e", "i",  "i", "i",  "i",
         "d", "n", "o", "o", "o",  "o", "oe", "x", "o", "u", "u", "u", "ue", "y", "th", "ss"};
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const bool is_marked = text[i] == '\xc3' && i + 1 < text.size();
-        if (is_marked)
-            plain += kPlain[static_cast<unsigned char>(text[++i]) % 32];
-        else
+        if (!is_marked)
             plain += text[i];
+        else if (text[++i] == '\xbf')
+            plain += 'y';
+        else
+            plain += kPlain[static_cast<unsigned char>(text[i]) % 32];
     }
     return plain;
 }
