@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "server/background_worker.h"
 
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -59,7 +60,22 @@ bool BackgroundWorker::collect() {
         done.swap(done_);
     }
     open_ -= done.size();
-    for (const Done& each : done) each.job.deliver(each.failure);
+    for (auto each = done.begin(); each != done.end(); ++each) {
+        try {
+            each->job.deliver(each->failure);
+        } catch (...) {
+            if (++each == done.end()) throw;
+            // The others stay for the next call.
+            open_ += static_cast<std::size_t>(done.end() - each);
+            {
+                const std::lock_guard lock(mutex_);
+                done_.insert(done_.begin(), std::make_move_iterator(each),
+                             std::make_move_iterator(done.end()));
+            }
+            wake_();
+            throw;
+        }
+    }
     return !done.empty();
 }
 

@@ -39,7 +39,8 @@ class BackgroundWorker {
     static void doNow(Job job);
     /// Number of jobs not delivered yet.
     [[nodiscard]] std::size_t open() const { return open_; }
-    /// Delivers the finished jobs. \returns false if there were none
+    /// Delivers the finished jobs. If a delivery throws, the later ones wait for the next call.
+    /// \returns false if there were none
     bool collect();
     /// Waits up to `patience` for a finished job, then delivers all finished jobs.
     void collectWithin(std::chrono::nanoseconds patience);

@@ -52,6 +52,26 @@ TEST(BackgroundWorker, DeliversWhatAJobThrows) {
     EXPECT_EQ(told, "no paper");
 }
 
+TEST(BackgroundWorker, KeepsTheDeliveriesBehindOneThatThrows) {
+    const Control two(Control::max_allowed_parallelism, 2);
+    std::atomic<int> finished = 0;
+    BackgroundWorker workshop([&finished] { ++finished; });
+    std::string delivered;
+    for (const char name : {'a', 'b', 'c'})
+        workshop.give({[] {},
+                       [&delivered, name](const std::exception_ptr&) {
+                           if (name == 'a') throw std::runtime_error("no paper");
+                           delivered += name;
+                       }});
+    while (finished < 3) std::this_thread::yield();
+    EXPECT_THROW(workshop.collect(), std::runtime_error);
+    EXPECT_EQ(workshop.open(), 2U);
+    EXPECT_EQ(finished, 4) << "the owner hears that there is more to collect";
+    EXPECT_TRUE(workshop.collect());
+    EXPECT_EQ(delivered, "bc");
+    EXPECT_EQ(workshop.open(), 0U);
+}
+
 TEST(BackgroundWorker, GivesJobsWhileDelivering) {
     BackgroundWorker workshop([] {});
     int left = 5;
