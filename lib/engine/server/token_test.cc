@@ -43,6 +43,8 @@ TEST_F(Token, Comparison) {
     EXPECT_TRUE(isSameSecret("abc", "abc"));
     for (const char* given : {"", "ab", "abd", "abcd", "abcabc", "ABC"})
         EXPECT_FALSE(isSameSecret(given, "abc")) << given;
+    EXPECT_TRUE(isSameSecret("", ""));
+    EXPECT_FALSE(isSameSecret("abc", ""));
 }
 
 }  // namespace
