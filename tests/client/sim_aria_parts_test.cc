@@ -12,6 +12,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "support/test_folder.h"
 
@@ -298,6 +299,40 @@ TEST(SimAriaConfig, FunctorsSectionsAndOptions) {
     EXPECT_EQ(points.read.size(), 4U);
     write("Section Way\nPoint 1\n");
     EXPECT_FALSE(config.parseFile(file.c_str()));
+}
+
+/// Echoes at these points, mm.
+class Echoes : public ArRangeDevice {
+  public:
+    explicit Echoes(const std::vector<ArPose>& points)
+        : ArRangeDevice(1, 1, "echoes", 5000), myReadings(points.size()) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            myReadings[i].newData(0, points[i], 1);
+            myPointers.push_back(&myReadings[i]);
+        }
+    }
+    [[nodiscard]] const std::list<ArSensorReading*>* getRawReadings() const override {
+        return &myPointers;
+    }
+
+  private:
+    std::vector<ArSensorReading> myReadings;
+    std::list<ArSensorReading*> myPointers;
+};
+
+TEST(SimAriaLineFinder, ACornerOfALineIsNoPointBesideIt) {
+    // A wall of eleven points, and two more round its corner: too few for a line.
+    std::vector<ArPose> points;
+    for (int i = 0; i <= 10; ++i) points.emplace_back(100 * i, 0);
+    points.emplace_back(1000, 100);
+    points.emplace_back(1000, 200);
+    Echoes echoes(points);
+    ArLineFinder finder(&echoes);
+    ASSERT_EQ(finder.getLines()->size(), 1U);
+    EXPECT_EQ(finder.getLines()->at(0)->getEndPoint(), 10);
+    std::string rest;
+    for (const auto& point : *finder.getNonLinePoints()) rest += std::to_string(point.first) + " ";
+    EXPECT_EQ(rest, "11 12 ");
 }
 
 TEST(SimAriaFileParser, LinesByTheirFirstWord) {

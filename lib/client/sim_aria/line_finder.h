@@ -51,7 +51,12 @@ class ArLineFinder {
             begin = i;
         }
         int number = 0;
-        for (const auto& segment : mySegments) myLines[number++] = segment.get();
+        for (const auto& segment : mySegments) {
+            myLines[number++] = segment.get();
+            // Parts share their corners, so those of a dropped part may be on a line.
+            myRest.erase(myRest.lower_bound(segment->getStartPoint()),
+                         myRest.upper_bound(segment->getEndPoint()));
+        }
         return &myLines;
     }
     /// Points without those of any line.
