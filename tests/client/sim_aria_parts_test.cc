@@ -10,6 +10,7 @@
 #include <limits>
 #include <list>
 #include <memory>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -299,6 +300,21 @@ TEST(SimAriaConfig, FunctorsSectionsAndOptions) {
     EXPECT_EQ(points.read.size(), 4U);
     write("Section Way\nPoint 1\n");
     EXPECT_FALSE(config.parseFile(file.c_str()));
+}
+
+TEST(SimAriaActionGroup, LeavesTheRobotAloneThatFollowsItsOwn) {
+    alignas(ArRobot) unsigned char memory[sizeof(ArRobot)];
+    ArRobot* const first = new (memory) ArRobot;
+    ArActionGroupStop group(first);
+    first->~ArRobot();
+    ArRobot* const second = new (memory) ArRobot;
+    {
+        ArActionStop stop;
+        second->addAction(&stop, 50);
+        group.activateExclusive();
+        EXPECT_TRUE(stop.isActive());
+    }
+    second->~ArRobot();
 }
 
 /// Echoes at these points, mm.

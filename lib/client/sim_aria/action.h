@@ -98,11 +98,8 @@ class ArPriorityResolver : public ArResolver {
 /// Actions that are switched on and off together.
 class ArActionGroup {
   public:
-    explicit ArActionGroup(ArRobot* robot) : myRobot(robot) {}
-    virtual ~ArActionGroup() {
-        removeActions();
-        for (ArAction* action : myOwned) delete action;
-    }
+    explicit ArActionGroup(ArRobot* robot);
+    virtual ~ArActionGroup();
     ArActionGroup(const ArActionGroup&) = delete;
     ArActionGroup& operator=(const ArActionGroup&) = delete;
 
@@ -122,7 +119,9 @@ class ArActionGroup {
     std::list<ArAction*>* getActionList() { return &myActions; }
 
   protected:
-    ArRobot* myRobot;
+    friend class ArRobot;
+
+    ArRobot* myRobot;  // null once it is destroyed
     std::list<ArAction*> myActions, myOwned;
 };
 

@@ -290,6 +290,7 @@ class ArRobot : public sim_aria::RobotState {
     sim_aria::Link* link() { return myLink.get(); }
 
   private:
+    friend class ArActionGroup;
     static constexpr int kLastAtExit = -100;
     static constexpr short kEachCycle = 2;  // of commands that ask for packets; 1: the next one
     enum Occasion { Connect, FailedConnect, Disconnect, Loss, RunExit, kOccasions };
@@ -361,6 +362,7 @@ class ArRobot : public sim_aria::RobotState {
     ArPriorityResolver myOwnResolver;
     ArResolver* myResolver = &myOwnResolver;
     ArResolver::ActionMap myActions;
+    std::list<ArActionGroup*> myGroups;
     std::list<ArRangeDevice*> myDevices;
     std::map<int, ArLaser*> myLasers;
     ArPTZ* myCamera = nullptr;

@@ -15,6 +15,7 @@ inline ArRobot::~ArRobot() {
     Aria::delRobot(this);
     if (myKeys) myKeys->onDestroy(nullptr);
     for (const auto& action : myActions) action.second->myRobot = nullptr;
+    for (ArActionGroup* group : myGroups) group->myRobot = nullptr;
     for (ArRangeDevice* device : myDevices) device->myRobot = nullptr;
     for (const auto& laser : myLasers) laser.second->myRobot = nullptr;
 }
@@ -174,6 +175,20 @@ inline ArActionDesired* ArPriorityResolver::resolve(ActionMap* actions, ArRobot*
         myDesired.merge(&equal);
     }
     return &myDesired;
+}
+
+inline ArActionGroup::ArActionGroup(ArRobot* robot) : myRobot(robot) {
+    if (!myRobot) return;
+    const std::lock_guard<std::recursive_mutex> hold(myRobot->myMutex);
+    myRobot->myGroups.push_back(this);
+}
+
+inline ArActionGroup::~ArActionGroup() {
+    removeActions();
+    for (ArAction* action : myOwned) delete action;
+    if (!myRobot) return;
+    const std::lock_guard<std::recursive_mutex> hold(myRobot->myMutex);
+    myRobot->myGroups.remove(this);
 }
 
 inline void ArActionGroup::addAction(ArAction* action, int priority) {
