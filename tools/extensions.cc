@@ -18,6 +18,13 @@ const Extensions& extensions() {
         ISPACE_CAD
         ISPACE_CALIBRATION
         ISPACE_CURTAINS
+        // Kinds of sensors, in the order in which reports list those before the same one.
+        ISPACE_PIRS
+        ISPACE_CONTACTS
+        ISPACE_RFIDS
+        ISPACE_MICROPHONES
+        ISPACE_LUXES
+        ISPACE_MOTES
         ISPACE_DOORCOUNTERS
         ISPACE_EVENNESS
         ISPACE_EXPECT

@@ -14,7 +14,7 @@ import pathlib, re, sys
 root, most = pathlib.Path(sys.argv[1]), 8
 # Doors and windows are older than their motors and blinds, which are states. RFID readers added the key `tag`, light
 # meters the key `lumens`. SVG has an element <switch>, rays have contacts, and ROS has messages with names of readings.
-pattern_of = {"contact": '"contact"|\\bContactState\\b', "door": '{"door", "', "rfid": '"rfid"|\\btagKey\\b', "lux": '"lux"|"lumens"'}
+pattern_of = {"door": '{"door", "', "rfid": '"rfid"|\\btagKey\\b', "lux": '"lux"|"lumens"'}
 unrelated = {("switch", "lib/extensions/cad/svg.cc"), ("contact", "lib/kernel/trace/flat_packet.cc")}
 unrelated |= {(kind, f"lib/kernel/sense/formats/ros_{part}") for kind in ("lux", "thermometer", "imu")
               for part in ("types.h", "types.cc", "messages.h")}
@@ -22,7 +22,7 @@ files = {}
 for folder in ("lib", "tools", "share/schemas", "share/sweep"):
     for path in (root / folder).rglob("*"):
         name = path.relative_to(root).as_posix()
-        if path.suffix in (".cc", ".h", ".py", ".js", ".json") and not name.endswith("_test.cc"):
+        if path.suffix in (".cc", ".h", ".py", ".js", ".json") and not name.endswith(("_test.cc", "_test.h")):
             files[name] = path.read_text(encoding="utf-8")
 
 def found(cell):

@@ -21,13 +21,14 @@ inline Record sensorRecord(const std::string& line) {
     return readRecord(line, "line", schemas);
 }
 
-/// Removes the lines of robots and projectors, which are not tested here; the lines stay as empty
-/// ones.
+/// Removes the lines of robots, projectors and kinds that are not added; they stay as empty ones.
 inline std::string sensorsOf(const std::string& text) {
     std::istringstream lines(text);
     std::string kept;
     for (std::string line; std::getline(lines, line);)
-        kept += line.starts_with("robot ") || line.starts_with("projector ") ? "\n" : line + '\n';
+        kept += line.starts_with("#") || sensorKind(line.substr(0, line.find(' '))) != nullptr
+                    ? line + '\n'
+                    : "\n";
     return kept;
 }
 
@@ -38,7 +39,9 @@ inline const Record* deviceFor(const Record& record) {
     static const Schemas schemas(sensorDeviceSchemas());
     static const std::vector<Record> devices = [] {
         std::vector<Record> all;
-        for (const auto& file : std::filesystem::directory_iterator(sourcePath("share/devices"))) {
+        const std::filesystem::recursive_directory_iterator files(sourcePath("share/devices"));
+        for (const auto& file : files) {
+            if (!file.is_regular_file()) continue;
             const std::string text = sensorsOf(readAll(file.path().string()));
             Document document = readRecordText(text, file.path().string(), schemas);
             for (Record& device : document.records) all.push_back(std::move(device));

@@ -72,15 +72,15 @@ TEST(SessionChange, RequestsThatFollowAtOnceShareAChange) {
     std::vector<std::string> lines;
     std::string answers;
     for (int i = 0; i < 200; ++i) {
-        lines.push_back("ADD mote at=" + std::to_string(i % 3) + ",1,1");
-        answers += "OK ADD id=mote" + std::to_string(i + 1) + " t=0.000\n";
+        lines.push_back("ADD tag at=" + std::to_string(i % 3) + ",1,1");
+        answers += "OK ADD id=tag" + std::to_string(i + 1) + " t=0.000\n";
     }
     Changing talk;
     Session& world = talk.client("WORLD");
     EXPECT_EQ(together(talk, world, lines), answers);
     EXPECT_LT(talk.room.world.changes(), 40) << "changes for 200 requests";
-    EXPECT_EQ(talk.room.world.scene().records.back().keyword(), "mote");
-    EXPECT_EQ(talk.answer(world, "DELETE mote*"), "OK DELETE t=0.000\n");
+    EXPECT_EQ(talk.room.world.scene().records.back().keyword(), "tag");
+    EXPECT_EQ(talk.answer(world, "DELETE tag*"), "OK DELETE t=0.000\n");
 }
 
 TEST(SessionChange, ARefusalAmongThemIsAloneInItsTurn) {
@@ -108,7 +108,7 @@ TEST(SessionChange, RequestsSetThatFollowAtOnceShareAChange) {
     std::string answers;
     lines.reserve(200);
     for (int i = 0; i < 200; ++i) {
-        ASSERT_TRUE(talk.answer(world, "ADD mote id=m" + std::to_string(i) + " at=1,1,1")
+        ASSERT_TRUE(talk.answer(world, "ADD tag id=m" + std::to_string(i) + " at=1,1,1")
                         .starts_with("OK ADD "));
         lines.push_back("SET m" + std::to_string(i) + ".at=2,1,1");
         answers += "OK SET t=0.000\n";
@@ -117,7 +117,7 @@ TEST(SessionChange, RequestsSetThatFollowAtOnceShareAChange) {
     EXPECT_EQ(together(talk, world, lines), answers);
     EXPECT_LT(talk.room.world.changes(), before + 40) << "changes for 200 requests";
     for (const Record& record : talk.room.world.scene().records) {
-        if (record.keyword() == "mote") {
+        if (record.keyword() == "tag") {
             EXPECT_EQ(record.tuple("at")[0], 2);
         }
     }
@@ -157,7 +157,7 @@ TEST(SessionChange, RequestsSetAreAnsweredAsOneByOne) {
         for (int k = 1; k < 10; ++k) {
             const std::string n = std::to_string(k);
             for (const std::string& line :
-                 {"ADD mote id=m" + n + " at=1,1,1", "ADD laser id=l1" + n + " at=0,1 rate=1",
+                 {"ADD tag id=m" + n + " at=1,1,1", "ADD laser id=l1" + n + " at=0,1 rate=1",
                   "ADD camera id=c" + n + " at=0,1,1 pixels=1000,700"})
                 add(line);
         }
@@ -181,7 +181,7 @@ TEST(SessionChange, RequestsSetExceedNoSumAmongThem) {
     talk.answer(world, "ADD camera id=c1 at=0,1,1 pixels=7500,7500");
     talk.answer(world, "ADD camera id=c2 at=0,1,1 pixels=900,700");
     for (const char* const id : {"m1", "m2", "m3"})
-        talk.answer(world, std::string("ADD mote at=1,1,1 id=") + id);
+        talk.answer(world, std::string("ADD tag at=1,1,1 id=") + id);
     EXPECT_GT(world.mayJoin("SET m1.at=2,1,1"), 0U);
     const std::string answers = together(
         talk, world, {"SET c2.pixels=7500,7500", "SET c1.pixels=900,700", "SET m1.at=2,1,1"});
@@ -203,10 +203,10 @@ TEST(SessionChange, ActsSetStates) {
     talk.answer(world, "ADD lamp id=lamp at=1,1");
     EXPECT_EQ(talk.answer(world, "ACT lamp on=0 level=50%"), "OK ACT t=0.000\n");
     EXPECT_EQ(talk.answer(world, "ACT lamp on=1 on=0").substr(0, 8), "ERR 400 ");
-    talk.answer(world, "ADD pir id=s1 at=1,1,1");
+    talk.answer(world, "ADD mat id=s1 at=1,1 size=1,1");
     EXPECT_EQ(talk.ask(world, "STATE"),
-              "OK STATE t=0.000 lamp.on=0 lamp.level=0.5 lamp.color=1,1,0.97 s1.motion=0\n");
-    EXPECT_EQ(talk.ask(world, "STATE s1"), "OK STATE t=0.000 s1.motion=0\n");
+              "OK STATE t=0.000 lamp.on=0 lamp.level=0.5 lamp.color=1,1,0.97 s1.n=0 s1.on=-\n");
+    EXPECT_EQ(talk.ask(world, "STATE s1"), "OK STATE t=0.000 s1.n=0 s1.on=-\n");
     EXPECT_EQ(talk.ask(world, "STATE r1"), "ERR 404 no sensor or actuator `r1` has a state\n");
     talk.ask(world, "EVENTS state,change");
     EXPECT_EQ(talk.answer(world, "ACT lamp on=1"), "OK ACT t=0.000\n");

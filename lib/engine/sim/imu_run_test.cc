@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inertial measurement units and RFID readers of a running world.
+// Inertial measurement units of a running world.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -89,26 +89,6 @@ TEST(ImuRun, ReadsMeansInTheAxesOnTheWay) {
     const auto [c, s] = cosSin(Angle::degrees(30));
     EXPECT_NEAR(off.accelerations.x, c * ahead + s * left, 1e-9);
     EXPECT_NEAR(off.accelerations.y, c * left - s * ahead, 1e-9);
-}
-
-TEST(RfidRun, ListsATagWhileItPasses) {
-    const Scene room = testing::scene("ispace size=12,12\n",
-                                      "rfid at=0,-2,1 heading=90 fov=60,90 range=3\n"
-                                      "human at=-4,0 path=4,0 tag=anna\n");
-    World world(room, milliseconds(50));
-    std::vector<std::vector<std::string>> lists = {{}};
-    double first = 0, end = 0;
-    while (world.time() < std::chrono::seconds(12)) {
-        world.step();
-        if (world.latestReadings().empty()) continue;
-        const auto& reading = std::get<RfidTags>(world.reading(0).value);
-        if (reading.tags == lists.back()) continue;
-        lists.push_back(reading.tags);
-        (reading.tags.empty() ? end : first) = reading.time;
-    }
-    ASSERT_EQ(lists, (std::vector<std::vector<std::string>>{{}, {"anna"}, {}}));
-    // The field is 2 * 2 tan 30 = 2.3 m wide there, and the person walks 1.2 m a second.
-    EXPECT_NEAR(end - first, 2.31 / 1.2, 0.4);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(Pace, IsMeasuredOverASecond) {
 }
 
 TEST(Pace, WhatIsAddedCountsUntilItIsMeasured) {
-    const Scene scene = testing::scene("ispace size=8,6\n", "mote id=m at=0,0,1 rate=200\n");
+    const Scene scene = testing::scene("ispace size=8,6\n", "laser id=m at=0,0 rate=200\n");
     Pace pace;
     pace.added({&scene.sensors[0]}, std::chrono::microseconds(500));
     EXPECT_NEAR(pace.load(always).all, 0.2, 1e-9);
@@ -58,7 +58,7 @@ TEST(Pace, WhatIsAddedCountsUntilItIsMeasured) {
 }
 
 TEST(Pace, ReadingsThatAreMadeMoreOftenCountAtOnce) {
-    const Scene scene = testing::scene("ispace size=8,6\n", "mote id=m at=0,0,1 rate=1\n");
+    const Scene scene = testing::scene("ispace size=8,6\n", "laser id=m at=0,0 rate=1\n");
     Pace pace;
     pace.worked({milliseconds(30), milliseconds(20), seconds(1)}, {});
     pace.added({&scene.sensors[0]}, milliseconds(5));

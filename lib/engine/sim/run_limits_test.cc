@@ -37,15 +37,6 @@ TEST(RunLimits, EchoesOfRobotsAndTagsCount) {
 }
 
 /// Frames count as often as they are recorded, not as often as they can be read.
-TEST(RunLimits, CountsWhatEachSensorAsksOfTheRoom) {
-    const std::string sources =
-        "lamp at=0,0 on=yes\nlamp at=1,0 on=yes\nlamp at=2,0 on=no\nspeaker at=0,1 on=yes\n"
-        "robot at=2,2 tag=t1\n";
-    EXPECT_EQ(loadOf(sources + "lux at=1,1\n").beams, 16 * 3) << "two lamps are on";
-    EXPECT_EQ(loadOf(sources + "microphone at=1,1\n").beams, 1 + 8);
-    EXPECT_EQ(loadOf(sources + "rfid at=1,1\n").beams, 1 + 1);
-}
-
 TEST(RunLimits, RecordsTakeBytes) {
     RecordOptions record;
     record.frame_rate = 0;

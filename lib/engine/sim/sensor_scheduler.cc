@@ -86,7 +86,7 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
         periods_.emplace_back(periodRate(sensor));
         is_heavy_.push_back(isHeavy(sensor) ? 1 : 0);
         readings_[i].pose = sensor.pose;
-        if (kindOf(sensor.model).follow != nullptr) lasting_.push_back(i);
+        if (kindOf(sensor.model).needs_each_period) lasting_.push_back(i);
         if (sensor.is<Ranger>()) readings_[i].value = DepthFrame();
         if (sensor.is<Camera>()) readings_[i].value = Photo();
         const auto* laser = sensor.tryAs<Laser>();

@@ -129,8 +129,8 @@ TEST(Coupling, FloorsAndSurroundingsGiveTheSameFigures) {
             return "{desk: {at: [1.5, 4.5]}}, {laser: {id: l, at: [" + place + number(0.1, 3.2) +
                    "], heading: " + number(0, 360) + "}}, {ranger: {id: r, at: [" + place +
                    number(0.5, 3) + "], tilt: -50, heading: " + number(0, 360) +
-                   ", fov: '90,60', range: '0,20'}}, {microphone: {id: m, at: [" + place +
-                   number(0.5, 2) + "]}}";
+                   ", fov: '90,60', range: '0,20'}}, {tag: {id: m, at: [" + place + number(0.5, 2) +
+                   "]}}";
         };
         const std::string ground = sensors(), upper = sensors();
         const SiteScene building =
@@ -177,7 +177,7 @@ TEST(Coupling, EqualStoreysShareTheirFloor) {
 /// Steps stop sound of a running building as they do in coverage and scan.
 TEST(Coupling, StepsStopSoundInRunsAsWell) {
     const SiteScene building =
-        twoStoreys({kSquare, "{microphone: {id: m, at: [4, 2.5, 1]}}"}, {}, kFlight);
+        twoStoreys({kSquare, "{tag: {id: m, at: [4, 2.5, 1]}}"}, {}, kFlight);
     const Coupling coupling(building);
     RoomsAround rooms(building);
     const Scene& scene = *building.scenes[0];

@@ -67,8 +67,9 @@ TEST(MoveTrials, GainAsWholeMeasures) {
     expectSameGains("uwb at=-4,-3,2\nuwb at=4,3,2.7\nuwb at=-3,3,0.2\nuwb at=2,-1,0.2\n");
     expectSameGains("camera at=-4.9,-3.9,2.5 heading=40 tilt=-30 pixels=640,480\n");
     expectSameGains("laser at=-4,-3 fov=270 range=7\nlaser at=3,3,0.5 tilt=-10 range=6\n");
-    expectSameGains("ranger at=-4,0,1 tilt=-20 fov=40 range=6\npir at=4.8,3.8,2.4 heading=-140\n");
-    expectSameGains("rfid at=-4,0,0\nradar at=0.1,3,1.2 heading=-60\nuwb at=1,-3,0\n");
+    expectSameGains(
+        "ranger at=-4,0,1 tilt=-20 fov=40 range=6\nradar at=4.8,3.8,2.4 heading=-140\n");
+    expectSameGains("radar at=-4,0,0\nradar at=0.1,3,1.2 heading=-60\nuwb at=1,-3,0\n");
 }
 
 TEST(MoveTrials, CountFloorThatEnoughReceiversHear) {

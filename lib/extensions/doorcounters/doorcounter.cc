@@ -328,10 +328,9 @@ const SensorKind DoorCounter::kKind = {
     .is_read = true,
     .place = placeAtDoor,
     .measure = [](const Moment& now) { return std::any(countAt(now)); },
-    .follow =
-        [](const std::any& before, std::any& now) {
-            addPassages(*std::any_cast<DoorCount>(&before), *std::any_cast<DoorCount>(&now));
-        },
+    .follow = [](const AddedReading& before,
+                 AddedReading& now) { addPassages(before.as<DoorCount>(), now.as<DoorCount>()); },
+    .needs_each_period = true,
     .reading = &kReading};
 
 void addDoorCounters() {

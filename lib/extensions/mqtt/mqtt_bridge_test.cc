@@ -307,7 +307,7 @@ class BridgeTest : public ::testing::Test {
   protected:
     BridgeTest() {
         ask("ADD lamp id=lp at=1,1");
-        ask("ADD pir id=s1 at=2,2,1");
+        ask("ADD gate id=s1 at=2,2");
         bridge.emplace(talk.state, std::make_unique<MemoryClient>(broker), "home");
     }
     void ask(const std::string& request) {
@@ -349,7 +349,7 @@ class BridgeTest : public ::testing::Test {
 TEST_F(BridgeTest, PublishesStatesAndSubscribesToCommands) {
     EXPECT_EQ(broker.last("home/lp/on"), "OFF");
     EXPECT_EQ(broker.last("home/lp/level"), "100");
-    EXPECT_EQ(broker.last("home/s1/motion"), "OFF");
+    EXPECT_EQ(broker.last("home/s1/broken"), "OFF");
     EXPECT_EQ(broker.last("home/status"), "online");
     EXPECT_NE(broker.last("homeassistant/light/home_lp/config"), "");
     EXPECT_EQ(broker.subscriptions,
@@ -395,7 +395,7 @@ TEST_F(BridgeTest, SaysInWordsOfTopicsWhatIsWanted) {
         {"lp/on", "DIM", "`DIM` is given, wanted ON or OFF"},
         {"lp/color", "300,0,0", "`300,0,0` is given, wanted three numbers R,G,B from 0 to 255"},
         {"lp/color", "1,2", "`1,2` is given, wanted three numbers R,G,B from 0 to 255"},
-        {"s1/motion", "ON", "a sensor reports this state, and no command sets it"},
+        {"s1/broken", "ON", "a sensor reports this state, and no command sets it"},
         {"l2/on", "ON", "no thing of the room has this state, see home/+/+"}};
     for (const auto& [topic, payload, reason] : cases) {
         broker.published.clear();
@@ -493,7 +493,7 @@ TEST_F(BridgeTest, RemovesThingsThatAreGone) {
                             MqttMessage{topic, "", true}),
                   broker.published.end())
             << topic;
-    EXPECT_EQ(broker.last("home/s1/motion"), "OFF");
+    EXPECT_EQ(broker.last("home/s1/broken"), "OFF");
     ask("ADD switch id=lp at=1,1");
     step();
     EXPECT_EQ(broker.last("home/lp/on"), "OFF");

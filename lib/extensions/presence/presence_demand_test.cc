@@ -33,7 +33,7 @@ double presenceOf(const Scene& scene, const std::vector<SensorGroup>& groups,
 
 TEST(ArrangePresence, ValueIsTheShareThatCoverageMeasures) {
     const Scene scene = roomScene(kTwoRooms);
-    const auto groups = groupsOf(scene, {"pir,range=2"});
+    const auto groups = groupsOf(scene, {"radar,range=2"});
     ArrangeOptions options = coarse(Optimizer::Exact);
     options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     const Arrangement one = arranged(scene, groups, options);
@@ -46,7 +46,7 @@ TEST(ArrangePresence, ValueIsTheShareThatCoverageMeasures) {
 
 TEST(ArrangePresence, ATargetIsReachedWithTheFewestInEveryRoom) {
     const Scene scene = roomScene(kTwoRooms);
-    const auto groups = groupsOf(scene, {"pir"}, true);
+    const auto groups = groupsOf(scene, {"radar"}, true);
     ArrangeOptions options = coarse(Optimizer::Exact);
     options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     options.target = 0.95;
@@ -58,9 +58,9 @@ TEST(ArrangePresence, ATargetIsReachedWithTheFewestInEveryRoom) {
 }
 
 TEST(ArrangePresence, CountsSensorsThatStand) {
-    const Document layout = layoutFrom("pir id=m1 at=-3.9,0,0.15\n");
+    const Document layout = layoutFrom("radar id=m1 at=-3.9,0,0.15\n");
     const Scene scene = roomScene(kTwoRooms, &layout);
-    const auto groups = groupsOf(scene, {"pir"});
+    const auto groups = groupsOf(scene, {"radar"});
     ArrangeOptions options = coarse(Optimizer::Exact);
     options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     const Arrangement other = arranged(scene, groups, options);
@@ -74,7 +74,7 @@ TEST(ArrangePresence, RefusesSensorsWithoutSenseOfMotionAndWaysOfNobody) {
     options.demand = presenceDemand(std::make_shared<PeoplePaths>(waysInBoth()), 0);
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UsageError);
     options.demand = presenceDemand(std::make_shared<PeoplePaths>(), 0);
-    EXPECT_THROW(arranged(scene, groupsOf(scene, {"pir"}), options), UnmetError);
+    EXPECT_THROW(arranged(scene, groupsOf(scene, {"radar"}), options), UnmetError);
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ ArrangeOptions coarse() {
     return options;
 }
 
-SensorSpec pirs(int count) {
-    Record record(*sceneSchemas().find("pir"));
+SensorSpec radars(int count) {
+    Record record(*sceneSchemas().find("radar"));
     record.set("range", Tuple{2});
     return {record, count};
 }
@@ -64,7 +64,7 @@ ArrangedBuilding arrangedFor(const SiteScene& building, int sensors,
         goals[i].counts = !ways[i].pieces.empty();
     }
     options.demand = goals[0].demand;
-    return arrangedIn(building, {pirs(sensors)}, options, goals);
+    return arrangedIn(building, {radars(sensors)}, options, goals);
 }
 
 /// The share of all ways that the sensors detect, as coverage --presence measures it.
@@ -82,7 +82,7 @@ double presenceIn(const SiteScene& building, const ArrangedBuilding& arranged,
 CurvePoint alone(const Scene& scene, int sensors, const PeoplePaths& ways) {
     ArrangeOptions options = coarse();
     options.demand = demandOf(ways);
-    const SensorSpec spec = pirs(sensors);
+    const SensorSpec spec = radars(sensors);
     SilentProgress progress;
     double length = 0;
     for (const PathPiece& piece : ways.pieces) length += piece.length;
@@ -131,9 +131,9 @@ TEST(BuildingDemand, SeveralKindsAndATargetAreOneProblem) {
     for (std::size_t i = 0; i < 2; ++i) goals[i].demand = demandOf(ways[i]);
     options.demand = goals[0].demand;
     options.target = 0.9;
-    SensorSpec small = pirs(9);
+    SensorSpec small = radars(9);
     small.record.set("range", Tuple{1.0});
-    const ArrangedBuilding few = arrangedIn(building, {pirs(9), small}, options, goals);
+    const ArrangedBuilding few = arrangedIn(building, {radars(9), small}, options, goals);
     EXPECT_TRUE(few.found.is_reached);
     EXPECT_GE(presenceIn(building, few, ways), 0.9 - 1e-6);
     EXPECT_EQ(few.found.least, few.found.sensors.size()) << "proven";

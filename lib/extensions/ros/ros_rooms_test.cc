@@ -428,7 +428,7 @@ TEST(ServedRooms, RequestsToOneRoomThatFollowShareAChange) {
     for (int i = 0; i < 60; ++i) {
         // Two of the other storey are among them, and one that no storey has.
         const std::string id = (i == 20 || i == 21 ? "ground/m" : "upper/m") + std::to_string(i);
-        lines.push_back("ADD mote id=" + (i == 40 ? "m" : id) + " at=0,1,1");
+        lines.push_back("ADD tag id=" + (i == 40 ? "m" : id) + " at=0,1,1");
         wanted += i == 40 ? "ERR 404 `m` names no storey, as in ground/desk1\n"
                           : "OK ADD id=" + id + " t=0.000\n";
     }

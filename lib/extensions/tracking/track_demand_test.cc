@@ -330,7 +330,7 @@ TEST(ArrangeForTracks, RefusesSensorsOfMotionAndWaysWithoutPeople) {
     const Scene scene = roomScene(kTwoRooms);
     ArrangeOptions options = coarse();
     options.demand = std::make_shared<TrackDemand>(standing({{-3, 0}}), LossRule{});
-    EXPECT_THROW(arranged(scene, groupsOf(scene, {"pir"}), options), UsageError);
+    EXPECT_THROW(arranged(scene, groupsOf(scene, {"radar"}), options), UsageError);
     options.demand = std::make_shared<TrackDemand>(PeopleMoments(), LossRule{});
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UnmetError);
 }

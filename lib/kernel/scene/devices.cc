@@ -55,15 +55,19 @@ std::string unknownModel(const std::string& model, const std::string& keyword,
 }
 
 std::vector<std::string> deviceFiles(const std::string& folder) {
-    std::vector<std::string> files;
+    std::vector<std::filesystem::path> files;
     std::error_code error;
     const std::filesystem::directory_iterator entries(folder, error);
     if (error) throw std::system_error(error, "the device catalogue " + folder);
-    for (const auto& entry : entries) {
-        if (entry.path().extension() == ".3dm") files.push_back(entry.path().string());
+    for (const auto& entry : entries)
+        if (entry.path().extension() == ".3dm") files.push_back(entry.path());
+    for (const SensorKind* const kind : sensorKinds()) {
+        auto file = std::filesystem::path(folder) / "kinds" / kind->keyword;
+        file += ".3dm";
+        if (std::filesystem::exists(file)) files.push_back(std::move(file));
     }
-    std::sort(files.begin(), files.end());
-    return files;
+    std::ranges::sort(files, {}, &std::filesystem::path::filename);
+    return {files.begin(), files.end()};
 }
 
 }  // namespace

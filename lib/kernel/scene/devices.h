@@ -31,7 +31,8 @@ class DeviceCatalogue {
     std::vector<Record> records_;
 };
 
-/// Reads all `*.3dm` files of a folder in the order of their names.
+/// Reads all `*.3dm` files of a folder, and `kinds/KEYWORD.3dm` in it for each kind of sensor that
+/// the program has, in the order of their names. Devices of kinds that extensions add lie there.
 /// \throws FormatError for bad files and doubled models, std::system_error if it cannot be read
 DeviceCatalogue loadDevices(const std::string& folder);
 

@@ -104,6 +104,22 @@ TEST_F(DeviceFolder, DoubledModelsAndBadParametersAreReportedTogether) {
     EXPECT_NE(text.find("c.3dm:2:"), std::string::npos) << text;
 }
 
+TEST_F(DeviceFolder, FilesOfKindsThatTheProgramLacksAreLeftOut) {
+    std::filesystem::create_directory(folder_.path() / "kinds");
+    write("b.3dm", "laser model=two" + kTail);
+    write("kinds/sundial.3dm", "sundial model=one hours=12" + kTail);
+    write("kinds/laser.3dm", "laser model=three" + kTail);
+    EXPECT_EQ(loadDevices(folder_.path().string()).models(),
+              (std::vector<std::string>{"two", "three"}));
+}
+
+TEST_F(DeviceFolder, AnUnknownKeywordIsAnError) {
+    write("a.3dm", "lasser model=one" + kTail);
+    const std::string text = loadFindings();
+    EXPECT_NE(text.find("a.3dm:2:1: error: "), std::string::npos) << text;
+    EXPECT_NE(text.find("did you mean `laser`?"), std::string::npos) << text;
+}
+
 TEST_F(DeviceFolder, EachKindIsCheckedByItsOwnRules) {
     write("a.3dm", "robot model=fast speed=2 max_speed=1" + kTail + "laser model=near range=3,2" +
                        kTail + "robot model=near" + kTail);

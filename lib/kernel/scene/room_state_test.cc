@@ -74,17 +74,5 @@ TEST(RoomState, SeveralStatesAreOneChange) {
     EXPECT_EQ(edits[1].value, "0.5");
 }
 
-TEST(RoomState, AContactKnowsItsDoor) {
-    const auto is_open = [](const std::string& door) {
-        const Scene room =
-            testing::scene("ispace size=6,6\n" + door, "contact id=k1 at=0,3,2 door=d1\n");
-        return room.sensors.at(0).as<Contact>().is_open;
-    };
-    EXPECT_FALSE(is_open("door id=d1 at=0,3\n"));
-    EXPECT_TRUE(is_open("door id=d1 at=0,3 open=yes\n"));
-    EXPECT_THROW(is_open("door id=d2 at=0,3\n"), FormatError);
-    EXPECT_THROW(is_open("cube id=d1 at=1,1\n"), FormatError);
-}
-
 }  // namespace
 }  // namespace ispace

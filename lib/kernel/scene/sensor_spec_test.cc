@@ -6,15 +6,14 @@
 #include "base/error.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
-#include "support/test_paths.h"
+#include "support/test_layout.h"
 
 namespace ispace {
 namespace {
 
 SensorSpec read(const std::string& text) {
-    static const DeviceCatalogue kDevices = loadDevices(testing::sourcePath("share/devices"));
     constexpr std::string_view kKinds[] = {"laser"};
-    return readSensorSpec(text, kKinds, sceneSchemas(), kDevices);
+    return readSensorSpec(text, kKinds, sceneSchemas(), testing::devices());
 }
 
 std::string errorOf(const std::string& text) {

@@ -12,7 +12,7 @@ AddedReading readingOf(const AddedSensor& sensor, const Moment& now) {
 
 void follow(const AddedReading& before, AddedReading& now) {
     if (before.kind != now.kind || now.kind->follow == nullptr) return;
-    now.kind->follow(before.value, now.value);
+    now.kind->follow(before, now);
 }
 
 }  // namespace ispace

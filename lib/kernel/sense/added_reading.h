@@ -22,8 +22,19 @@ struct AddedReading {
     [[nodiscard]] const Value& as() const {
         return *std::any_cast<Value>(&value);
     }
+    template <typename Value>
+    [[nodiscard]] Value& as() {
+        return *std::any_cast<Value>(&value);
+    }
     static const ReadingKind kKind;  ///< of no reading: a row for the list of kinds
 };
+
+/// SensorKind::measure of a kind with a function `VALUE readingOf(const Parameters&, const
+/// Moment&)`.
+template <typename Parameters>
+std::any measureBy(const Moment& now) {
+    return readingOf(now.sensor.as<Parameters>(), now);
+}
 
 /// Measures by SensorKind::measure.
 AddedReading readingOf(const AddedSensor& sensor, const Moment& now);

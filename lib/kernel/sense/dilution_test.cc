@@ -100,8 +100,8 @@ TEST(Dilution, AnchorsMeasureDistances) {
 }
 
 TEST(Dilution, KindsThatMeasureNoPositionTellNone) {
-    EXPECT_EQ(informationOf(Pir(), {0, 0, 2}, {1, 0, 0}).xx, 0);
-    EXPECT_EQ(informationOf(Rfid(), {0, 0, 2}, {1, 0, 0}).xx, 0);
+    EXPECT_EQ(informationOf(Imu(), {0, 0, 2}, {1, 0, 0}).xx, 0);
+    EXPECT_EQ(informationOf(Thermometer(), {0, 0, 2}, {1, 0, 0}).xx, 0);
     EXPECT_TRUE(std::isinf(FloorInformation().error()));
 }
 

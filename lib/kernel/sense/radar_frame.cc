@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "sense/motion_sense.h"
 #include "sense/noise.h"
 #include "sense/sighting.h"
 

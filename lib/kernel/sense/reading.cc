@@ -52,10 +52,6 @@ Burst readingOf(const Tag& /*tag*/, const Moment& now) {
                      {now.options.celsius, now.options.noise_seed});
 }
 
-ContactState readingOf(const Contact& contact, const Moment& now) {
-    return {now.time, now.frame, now.pose, contact.is_open};
-}
-
 }  // namespace
 
 ReadingValue valueOf(Reading reading) {

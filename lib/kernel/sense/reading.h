@@ -12,17 +12,12 @@
 
 #include "sense/added_reading.h"
 #include "sense/depth.h"
-#include "sense/illuminance.h"
 #include "sense/inertia.h"
 #include "sense/moment.h"
-#include "sense/mote_report.h"
 #include "sense/photo.h"
-#include "sense/pir_state.h"
 #include "sense/radar_frame.h"
-#include "sense/rfid_tags.h"
 #include "sense/scan.h"
 #include "sense/selection.h"
-#include "sense/sound_level.h"
 #include "sense/temperature.h"
 #include "sense/trajectory.h"
 #include "sense/ultrasound_burst.h"
@@ -59,32 +54,20 @@ struct GateState {
     static const ReadingKind kKind;
 };
 
-/// A contact's door.
-struct ContactState {
-    double time = 0;  ///< seconds
-    int frame = 0;
-    Pose3 pose;
-    bool open = false;
-    static const ReadingKind kKind;
-};
-
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
-using ReadingValue =
-    std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, PirState, ContactState,
-                 RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia, MoteReport, Temperature,
-                 AddedReading, MatState, GateState>;
+using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, UwbRanges,
+                                  Inertia, Temperature, AddedReading, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
-using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, PirState,
-                             ContactState, RfidTags, UwbRanges, SoundLevel, Illuminance, Inertia,
-                             MoteReport, Temperature, AddedReading>;
+using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, UwbRanges,
+                             Inertia, Temperature, AddedReading>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);
 
 /// Carries the state of a sensor with memory on to its next reading, by `follow(before, now)` of
-/// its value: a PIR sensor holds its output.
+/// its value: a thermometer goes on from its last temperature.
 void carryOn(const ReadingValue& before, ReadingValue& now);
 
 /// Returns true if readAtOnce() reads sensors like this one by rays in a mesh.

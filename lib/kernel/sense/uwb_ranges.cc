@@ -14,8 +14,8 @@
 
 #include "env/point_location.h"
 #include "geom/predicates.h"
+#include "sense/electronic_tag_place.h"
 #include "sense/noise.h"
-#include "sense/rfid_tags.h"
 #include "sense/walls_between.h"
 
 namespace ispace {
@@ -42,7 +42,7 @@ Point3 tagOn(const MovingBody& body, bool is_person) {
 }
 
 /// Returns the positions of tags; empty for those of movers without a body. O(tags + bodies)
-std::vector<std::optional<Point3>> placesOf(const SharedList<RfidTag>& tags,
+std::vector<std::optional<Point3>> placesOf(const SharedList<ElectronicTag>& tags,
                                             const MovingBodies& bodies) {
     const auto is_person = [](std::uint32_t owner) { return owner >= kFirstPerson; };
     std::unordered_map<std::uint32_t, const MovingBody*> carriers;
@@ -51,8 +51,8 @@ std::vector<std::optional<Point3>> placesOf(const SharedList<RfidTag>& tags,
         if (!is_person(body.owner) || body.radius == 0) carriers.emplace(body.owner, &body);
     std::vector<std::optional<Point3>> places;
     places.reserve(tags.size());
-    for (const RfidTag& tag : tags) {
-        if (tag.carrier == RfidTag::Carrier::Thing) {
+    for (const ElectronicTag& tag : tags) {
+        if (tag.carrier == ElectronicTag::Carrier::Thing) {
             places.emplace_back(tag.at);
             continue;
         }
@@ -61,7 +61,7 @@ std::vector<std::optional<Point3>> placesOf(const SharedList<RfidTag>& tags,
             continue;
         }
         const auto mover = static_cast<std::uint32_t>(tag.mover);
-        const bool on_person = tag.carrier == RfidTag::Carrier::Person;
+        const bool on_person = tag.carrier == ElectronicTag::Carrier::Person;
         const auto carrier = carriers.find(on_person ? kFirstPerson + mover : mover);
         places.push_back(carrier == carriers.end()
                              ? std::nullopt
@@ -303,7 +303,7 @@ UwbRanges readingOf(const Uwb& uwb, const Moment& now) {
         return fix;
     };
     const auto take = [&](std::size_t i, bool is_in_sight) {
-        const RfidTag& tag = uwb.tags.begin()[i];
+        const ElectronicTag& tag = uwb.tags.begin()[i];
         const Point3 place = *tags->places[i];
         const auto ranging = rangingOf(uwb, now.sensor.id, now.pose.position, carrierOf(now.sensor),
                                        tag.text, place, now, is_in_sight);

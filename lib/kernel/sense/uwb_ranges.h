@@ -60,7 +60,7 @@ class UwbFixes {
         std::optional<std::uint64_t> seed;
         const RayScenes* worlds;
         Environment environment;  // keeps the address of its elements
-        SharedList<RfidTag> tags;
+        SharedList<ElectronicTag> tags;
         SharedList<UwbAnchor> anchors;
         std::vector<MovingBody> bodies;
         std::shared_ptr<Tags> of;

@@ -15,8 +15,8 @@
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ServedRoom room;
     Session world(room.state());
-    for (const char* request :
-         {"WORLD", "ADD lamp id=lp at=1,1", "ADD switch id=b1 at=1,0", "ADD pir id=s1 at=1,1,1"}) {
+    for (const char* request : {"WORLD", "ADD lamp id=lp at=1,1", "ADD switch id=b1 at=1,0",
+                                "ADD mat id=s1 at=1,1 size=1,1"}) {
         while (world.waiting()) world.proceed();
         world.request(request);
     }

@@ -2,6 +2,8 @@
 // Functions of SensorKind that several kinds share, those of extensions too.
 #pragma once
 
+#include <utility>
+
 #include "scene/sensor/field_of_view.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
@@ -11,6 +13,14 @@ namespace ispace {
 template <typename Parameters>
 SensorModel readModel(const Record& record, const Record* device) {
     return modelOf(parametersOf<Parameters>(record, device));
+}
+
+/// Changes the parameters of a model by `change`, a function of a reference to them.
+template <typename Parameters, typename Change>
+void changeModel(SensorModel& model, Change change) {
+    Parameters parameters = *tryModel<Parameters>(model);
+    change(parameters);
+    model = modelOf(std::move(parameters));
 }
 
 template <typename Parameters>

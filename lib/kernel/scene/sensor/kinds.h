@@ -8,17 +8,11 @@
 
 #include "scene/sensor/added_sensor.h"
 #include "scene/sensor/camera.h"
-#include "scene/sensor/contact.h"
 #include "scene/sensor/floor_sensor.h"
 #include "scene/sensor/imu.h"
 #include "scene/sensor/laser.h"
-#include "scene/sensor/lux.h"
-#include "scene/sensor/microphone.h"
-#include "scene/sensor/mote.h"
-#include "scene/sensor/pir.h"
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
-#include "scene/sensor/rfid.h"
 #include "scene/sensor/thermometer.h"
 #include "scene/sensor/ultrasound.h"
 #include "scene/sensor/uwb.h"
@@ -26,11 +20,10 @@
 namespace ispace {
 
 /// Parameters of a sensor of any kind; those on the floor are last. Reports and manuals list kinds
-/// in this order, and those that extensions add behind them. Only this header, the sources of the
-/// kinds and the computation of readings distinguish kinds.
-using SensorModel =
-    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Pir, Contact, Rfid, Uwb, Microphone,
-                 Lux, Imu, Mote, Thermometer, AddedSensor, Mat, Gate>;
+/// in this order, and those that extensions add among or behind them (SensorKind::listed_before).
+/// Only this header, the sources of the kinds and the computation of readings distinguish kinds.
+using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Uwb, Imu, Thermometer,
+                                 AddedSensor, Mat, Gate>;
 
 /// True for parameters in the list, false for those of a kind that an extension adds.
 template <typename Model, typename Models = SensorModel>

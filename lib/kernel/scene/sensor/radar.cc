@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor/radar.h"
 
+#include <cmath>
+
 #include "base/number.h"
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
@@ -30,6 +32,11 @@ Radar withParameters(Radar base, const Record& record) {
 
 FieldOfView fieldOfView(const Radar& radar, const Pose3& pose) {
     return FieldOfView::window(pose, 0.5 * radar.fov_x, 0.5 * radar.fov_y, radar.max_range);
+}
+
+bool senses(const Radar& radar, Vec2 velocity, Vec3 direction) {
+    const double speed = velocity.x * direction.x + velocity.y * direction.y;
+    return std::fabs(speed) >= radar.min_speed && speed != 0;
 }
 
 namespace {
@@ -110,6 +117,8 @@ const SensorKind Radar::kKind = {
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,
-    .follows_poses = true};
+    .follows_poses = true,
+    .senses = [](const SensorModel& model, Vec2 velocity,
+                 Vec3 direction) { return senses(std::get<Radar>(model), velocity, direction); }};
 
 }  // namespace ispace

@@ -48,6 +48,10 @@ struct Radar {
 /// `fov` keeps the other angle. \throws FormatError with all findings
 Radar withParameters(Radar base, const Record& record);
 
+/// Returns true if it detects a person in view, by the radial speed.
+/// \param velocity m/s over the floor \param direction unit vector from the radar to the person
+bool senses(const Radar& radar, Vec2 velocity, Vec3 direction);
+
 /// Returns the field of view at a pose, without occlusion: intervals of bearings and elevations.
 FieldOfView fieldOfView(const Radar& radar, const Pose3& pose);
 

@@ -129,7 +129,11 @@ std::span<const SensorKind* const> sensorKinds() { return kinds(); }
 
 void addSensorKind(const SensorKind& kind) {
     assert(!kind.is_read || (kind.measure != nullptr && kind.reading != nullptr));
-    if (sensorKind(kind.keyword) == nullptr) kinds().push_back(&kind);
+    if (sensorKind(kind.keyword) != nullptr) return;
+    const auto next = std::find_if(
+        kinds().begin(), kinds().end(),
+        [&kind](const SensorKind* listed) { return listed->keyword == kind.listed_before; });
+    kinds().insert(next, &kind);
 }
 
 const SensorKind* sensorKind(std::string_view keyword) {
@@ -146,12 +150,11 @@ const SensorKind& kindOf(const SensorModel& model) {
 }
 
 std::size_t kindRank(const SensorModel& model) {
-    const auto* const added = std::get_if<AddedSensor>(&model);
-    if (added == nullptr) return model.index();
     const auto known = sensorKinds();
-    return kRows.size() +
-           static_cast<std::size_t>(std::find(known.begin(), known.end(), &added->kind()) -
-                                    known.begin());
+    const auto found = std::find(known.begin(), known.end(), &kindOf(model));
+    // Those on the floor are last.
+    return found == known.end() ? known.size() + model.index()
+                                : static_cast<std::size_t>(found - known.begin());
 }
 
 std::vector<std::string_view> keywordsOf(bool SensorKind::*flag) {

@@ -117,6 +117,7 @@ struct RoomRecords {
     mutable std::map<std::type_index, std::any> lists = {};
 };
 
+struct AddedReading;
 struct Moment;
 struct ReadingKind;
 
@@ -128,6 +129,9 @@ struct SensorKind {
     std::string_view help = {};          ///< of the record
     std::string_view heading_help = {};  ///< of its key `heading`
     std::string_view device_help = {};   ///< of a device file's record; "": there are no devices
+    /// Reports and manuals list a kind that an extension adds before the one with this keyword; "",
+    /// or if the program lacks it: behind all others.
+    std::string_view listed_before = {};
     SensorSign sign = SensorSign::Disc;
     /// Keys besides those that all sensors have.
     void (*add_keys)(std::vector<KeySpec>& keys) = nullptr;
@@ -157,6 +161,10 @@ struct SensorKind {
     /// A point counts as covered if this many of the kind see it.
     std::size_t together = 1;
 
+    /// Returns true if it detects a person in view, by the velocity over the floor in m/s and the
+    /// unit vector from the sensor to the person. Null: its readings do not depend on motion.
+    bool (*senses)(const SensorModel& model, Vec2 velocity, Vec3 direction) = nullptr;
+
     /// Returns the pose of a sensor without `at` and `on` by other records, as above its door;
     /// empty without one. Null: no such sensor has a pose. \throws FormatError
     std::optional<Pose3> (*place)(const Record& record, const RoomRecords& room) = nullptr;
@@ -166,7 +174,10 @@ struct SensorKind {
     /// has rays.
     std::any (*measure)(const Moment& now) = nullptr;
     /// Continues from an earlier reading, of a sensor with memory. Null: it has none.
-    void (*follow)(const std::any& before, std::any& now) = nullptr;
+    void (*follow)(const AddedReading& before, AddedReading& now) = nullptr;
+    /// A run takes the reading of each of its periods, also of those that begin and end within a
+    /// step: what it remembers depends on all of them. \pre it has `follow`
+    bool needs_each_period = false;
     const ReadingKind* reading = nullptr;  ///< the fields, formats and topics of its readings
 };
 

@@ -7,8 +7,8 @@
 
 #include "geom/pose.h"
 #include "record/record.h"
+#include "scene/sensor/electronic_tag.h"
 #include "scene/sensor/field_of_view.h"
-#include "scene/sensor/rfid.h"
 #include "scene/sensor/sensor_keys.h"
 #include "scene/sensor/shared_list.h"
 
@@ -47,7 +47,7 @@ struct Uwb : UwbRadio {
     std::string model;              ///< "" for the bare anchor
     double rate = 10;               ///< rounds a second
     std::size_t slots = kUwbSlots;  ///< tags that a round has time for; the nearest answer
-    SharedList<RfidTag> tags;
+    SharedList<ElectronicTag> tags;
     SharedList<UwbAnchor> anchors;  ///< those of the room that stand, this one included
 
     [[nodiscard]] double readingRate() const { return rate; }

@@ -119,7 +119,7 @@ FieldValue positionsAsText(const View& reading) {
 /// Returns the tags of the room, sorted, each once.
 std::vector<std::string> tagsOfRoom(const View& reading) {
     std::vector<std::string> texts;
-    for (const RfidTag& tag : reading.sensor.as<Uwb>().tags) texts.push_back(tag.text);
+    for (const ElectronicTag& tag : reading.sensor.as<Uwb>().tags) texts.push_back(tag.text);
     std::sort(texts.begin(), texts.end());
     texts.erase(std::unique(texts.begin(), texts.end()), texts.end());
     return texts;
