@@ -56,7 +56,7 @@ violations() {
         if (in_lib && (parts[1] in known) && !((folder, parts[1]) in may))
             report("lib/" folder " must not include " target)
         if (in_lib && index($0, "\"") && !(parts[1] in known) && !(in_test && parts[1] == "support") &&
-            !(is_fuzz && target == "fuzz.h"))
+            !is_fuzz)
             report("name the folder: " target)
         # Rooms inside of folders have separate fences.
         if (!in_test && place ~ /^lib\/arrange\/search\// && index($0, "\"") && target !~ /^(base|arrange\/search)\//)
