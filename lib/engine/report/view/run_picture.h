@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/engine/report/view: recorded runs, drawn on the plan of their room.
 #pragma once
 
 #include <cstddef>
