@@ -15,7 +15,7 @@ namespace client {
 namespace {
 
 std::string roomIn(const ispace::testing::TestFolder& folder) {
-    const std::string file = folder.file("heads.env");
+    std::string file = folder.file("heads.env");
     std::ofstream(file) << "#env 1\n"
                            "ispace size=6,4\n"
                            "robot id=r at=0,0\n"

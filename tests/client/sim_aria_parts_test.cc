@@ -321,19 +321,19 @@ TEST(SimAriaActionGroup, LeavesTheRobotAloneThatFollowsItsOwn) {
 class Echoes : public ArRangeDevice {
   public:
     explicit Echoes(const std::vector<ArPose>& points)
-        : ArRangeDevice(1, 1, "echoes", 5000), myReadings(points.size()) {
+        : ArRangeDevice(1, 1, "echoes", 5000), readings_(points.size()) {
         for (std::size_t i = 0; i < points.size(); ++i) {
-            myReadings[i].newData(0, points[i], 1);
-            myPointers.push_back(&myReadings[i]);
+            readings_[i].newData(0, points[i], 1);
+            pointers_.push_back(&readings_[i]);
         }
     }
     [[nodiscard]] const std::list<ArSensorReading*>* getRawReadings() const override {
-        return &myPointers;
+        return &pointers_;
     }
 
   private:
-    std::vector<ArSensorReading> myReadings;
-    std::list<ArSensorReading*> myPointers;
+    std::vector<ArSensorReading> readings_;
+    std::list<ArSensorReading*> pointers_;
 };
 
 TEST(SimAriaLineFinder, ACornerOfALineIsNoPointBesideIt) {
