@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/views: pictures of a room from any standpoint, with what its sensors see.
 #pragma once
 
 #include <array>
