@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sense/electronic_tag_place.h"
 
+#include "sense/selection.h"
+
 namespace ispace {
 
 std::uint32_t ownerOf(const ElectronicTag& tag) {
