@@ -22,7 +22,7 @@ violations() {
     BEGIN {
         layer("base", ""); layer("geom", "base"); layer("raster", "geom"); layer("record", "geom")
         layer("env", "raster record"); layer("scene", "env"); layer("drawing", "scene")
-        layer("io", "drawing"); layer("trace", "scene"); layer("sense", "trace drawing")
+        layer("io", "drawing"); layer("trace", "scene"); layer("sense", "trace")
         layer("coverage", "sense"); layer("arrange", "coverage"); layer("report", "arrange io")
         layer("site", "report"); layer("sim", "sense"); layer("server", "sim"); layer("client", "")
         layer("passage", "site sim"); layer("cli", "server passage"); layer("extensions", "cli")

@@ -12,7 +12,7 @@
 #include "cli/picture_size.h"
 #include "sense/formats/mcap_writer.h"
 #include "sense/formats/point_cloud.h"
-#include "sense/formats/reading_picture.h"
+#include "sense/formats/reading_format.h"
 #include "sense/photo.h"
 
 namespace ispace {

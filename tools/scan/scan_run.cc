@@ -17,6 +17,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "io/calibration.h"
+#include "report/reading_picture.h"
 #include "scan/scan_batch.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
@@ -363,6 +364,7 @@ FormatOptions formatOptions(const ScanCommand& command, const SiteInput& input,
             .depth_per_metre = options.depth_per_metre,
             .color = options.color,
             .spectrum = options.spectrum,
+            .drawings = &readingDrawings(),
             .map_pixels = options.map_pixels,
             .compression = options.compression,
             .las_minor = options.las_minor,

@@ -12,9 +12,9 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "raster/codec.h"
+#include "sense/formats/camera_info.h"
 #include "sense/formats/point_cloud.h"
 #include "sense/formats/reading_fields.h"
-#include "sense/formats/reading_picture.h"
 #include "server/session.h"
 
 namespace ispace {

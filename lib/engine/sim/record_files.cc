@@ -21,7 +21,7 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "raster/codec.h"
-#include "sense/formats/reading_picture.h"
+#include "sense/formats/camera_info.h"
 #include "sense/formats/reading_text.h"
 
 namespace ispace {

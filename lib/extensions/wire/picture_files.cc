@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "raster/codec.h"
-#include "sense/formats/reading_picture.h"
+#include "sense/formats/camera_info.h"
 
 namespace ispace::wire {
 

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "sense/formats/camera_info.h"
 #include "sense/formats/reading_format.h"
-#include "sense/formats/reading_picture.h"
 #include "support/test_readings.h"
 
 namespace ispace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/formats/reading_picture.h"
+#include "sense/formats/camera_info.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -12,8 +12,8 @@
 #include "base/json_writer.h"
 #include "base/number.h"
 #include "raster/codec.h"
+#include "sense/formats/camera_info.h"
 #include "sense/formats/reading_format.h"
-#include "sense/formats/reading_picture.h"
 #include "sense/formats/reading_text.h"
 #include "sense/photo.h"
 

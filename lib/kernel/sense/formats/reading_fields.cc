@@ -6,9 +6,9 @@
 
 #include "base/message.h"
 #include "raster/codec.h"
+#include "sense/formats/camera_info.h"
 #include "sense/formats/field_values.h"
 #include "sense/formats/point_cloud.h"
-#include "sense/formats/reading_picture.h"
 
 namespace ispace {
 

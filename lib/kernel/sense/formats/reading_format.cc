@@ -10,7 +10,7 @@
 #include "base/number.h"
 #include "raster/codec.h"
 #include "scene/sensor/sensor.h"
-#include "sense/formats/reading_picture.h"
+#include "sense/formats/camera_info.h"
 #include "sense/formats/reading_text.h"
 
 namespace ispace {
@@ -209,7 +209,7 @@ class Png final : public FormatBase {
     }
     void append(std::string& out, std::size_t index, const Reading& reading) const override {
         if (const auto* scans = std::get_if<std::vector<Scan>>(&reading)) {
-            out += obstacleMapPng(sensor(index), scans->front(), options_.map_pixels);
+            out += options_.drawings->obstacles(sensor(index), scans->front(), options_.map_pixels);
         } else if (const auto* photo = std::get_if<Photo>(&reading)) {
             const Camera& camera = sensor(index).as<Camera>();
             out += pngOfRgb(camera.columns, camera.rows, photo->rgb);
@@ -226,8 +226,9 @@ class Png final : public FormatBase {
             addFilesBeside(sensor(index), room(index), *photo, options_, files);
         if (const auto* frame = std::get_if<DepthFrame>(&reading)) {
             const Sensor& placed = sensor(index);
-            if (options_.color)
-                files.push_back({kColor, colorDepthPng(placed, *frame, options_.spectrum)});
+            if (isColored())
+                files.push_back(
+                    {kColor, options_.drawings->depths(placed, *frame, options_.spectrum)});
             if (placed.as<Ranger>().projection == Projection::Pinhole)
                 files.push_back(
                     {kCameraInfo, cameraInfoYaml(cameraInfoOf(placed.as<Ranger>()), placed.id)});
@@ -253,7 +254,7 @@ class Png final : public FormatBase {
         std::vector<std::string> endings = FormatBase::endings();
         if (std::any_of(sensors_.read.begin(), sensors_.read.end(),
                         [](const Sensor& one) { return one.is<Ranger>(); })) {
-            if (options_.color) endings.emplace_back(kColor);
+            if (isColored()) endings.emplace_back(kColor);
             endings.emplace_back(kCameraInfo);
         }
         if (std::any_of(sensors_.read.begin(), sensors_.read.end(), isCamera))
@@ -264,6 +265,8 @@ class Png final : public FormatBase {
     [[nodiscard]] bool isBinary() const override { return true; }
 
   private:
+    [[nodiscard]] bool isColored() const { return options_.color && options_.drawings != nullptr; }
+
     static constexpr double kMaxDepth = 65535;
     static constexpr const char* kColor = "-color.png";
 };

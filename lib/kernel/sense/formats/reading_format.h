@@ -19,7 +19,6 @@
 #include "sense/formats/mcap_writer.h"
 #include "sense/formats/point_cloud.h"
 #include "sense/formats/reading_fields.h"
-#include "sense/formats/reading_picture.h"
 #include "sense/reading.h"
 #include "sense/site_sensors.h"
 
@@ -77,6 +76,20 @@ class ReadingFormat {
     [[nodiscard]] virtual bool isBinary() const { return false; }
 };
 
+/// Depths of the colours at the ends of a scale, in metres. Colour is linear in depth between them
+/// and constant beyond; either may be greater.
+struct DepthSpectrum {
+    double warm = 0, cold = 1;
+};
+
+/// Draws readings for people, as PNG; equal input gives equal bytes. See report/reading_picture.h.
+struct ReadingDrawings {
+    /// \param pixels of each side
+    std::string (*obstacles)(const Sensor& sensor, const Scan& scan, int pixels);
+    std::string (*depths)(const Sensor& sensor, const DepthFrame& frame,
+                          std::optional<DepthSpectrum> spectrum);
+};
+
 struct FormatOptions {
     History history;
     std::uint64_t seed = 0;
@@ -85,7 +98,9 @@ struct FormatOptions {
     double depth_per_metre = 1000;                 ///< of png
     bool color = true;                      ///< of png: also writes a colour picture for people
     std::optional<DepthSpectrum> spectrum;  ///< of the colour picture
-    int map_pixels = 800;                   ///< of png: side of an obstacle map
+    /// Of png: obstacle maps require it; null: no colour pictures.
+    const ReadingDrawings* drawings = nullptr;
+    int map_pixels = 800;                                 ///< of png: side of an obstacle map
     McapCompression compression = McapCompression::None;  ///< of mcap
     int las_minor = 4;                                    ///< of las: version 1.3 or 1.4
     /// Of png and jpeg: writes these files beside pictures; the table of labels requires the rooms.

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "geom/rotation.h"
+#include "sense/formats/camera_info.h"
 #include "sense/formats/cdr.h"
-#include "sense/formats/reading_picture.h"
 
 namespace ispace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/formats/reading_picture.h"
+#include "report/reading_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -342,6 +342,11 @@ std::string obstacleMapPng(const Sensor& sensor, const Scan& scan, int pixels) {
     drawSensor(picture, layout);
     picture.pop();
     return picture.write(PictureFormat::Png);
+}
+
+const ReadingDrawings& readingDrawings() {
+    static constexpr ReadingDrawings kDrawings{obstacleMapPng, colorDepthPng};
+    return kDrawings;
 }
 
 }  // namespace ispace

@@ -1,43 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Files beside pictures that other programs read: depths as PNG, and camera_info.
 #pragma once
 
 #include <array>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "sense/depth.h"
-#include "sense/scan.h"
+#include "scene/sensor/sensor.h"
 
 namespace ispace {
-
-// Readings as PNG pictures for people. Equal input gives equal bytes.
-
-/// Depths of the colours at the ends of a scale, in metres. Colour is linear in depth between them
-/// and constant beyond; either may be greater.
-struct DepthSpectrum {
-    double warm = 0, cold = 1;
-};
-
-/// Draws depths in colours, with a legend: near is warm, far is cold, no return is black. Without a
-/// spectrum, the scale spans the ranger's limits (of an ambiguous one: 0 to its ambiguity), so that
-/// pictures of one device are comparable.
-std::string colorDepthPng(const Sensor& sensor, const DepthFrame& frame,
-                          std::optional<DepthSpectrum> spectrum = std::nullopt);
-
-/// Draws the returns of a scan as points on a polar grid (thesis fig. 3.24): the sensor at the
-/// centre, bearing 0 upwards, labelled rings at round distances, a spoke every 30 degrees, the
-/// field of view shaded up to max_range. `pixels` wide and high.
-std::string obstacleMapPng(const Sensor& sensor, const Scan& scan, int pixels);
-
-/// Returns `id (model), frame k`, followed by tilt and roll unless they are 0.
-std::string pictureTitle(std::string_view id, std::string_view model, std::string_view kind,
-                         int frame, const Pose3& pose);
-/// Formats a round number of metres with its unit: "0.25 m".
-std::string metres(double value);
-/// Formats to a tenth of a degree, with a typographic minus sign: "−7.5°".
-std::string degrees(Angle angle);
 
 /// Writes depths as a 16-bit grey PNG in units of 1 / per_metre (1000: millimetres), rounded. 0
 /// means no return, or a depth outside 16 bits.
