@@ -51,6 +51,7 @@ const Extensions& extensions() {
         ISPACE_ROBUSTNESS
         ISPACE_TRACKING
         ISPACE_VIEWS
+        ISPACE_CAMERARULES
         ISPACE_ADVICE
         ISPACE_WIRE
         ISPACE_WEB

@@ -174,6 +174,8 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     line_.group("Goals");
     addGoalOptions();
     objectives_.declare(line_);
+    options_.groups = std::make_shared<ArrangeExtensions>(extensions().arrange());
+    options_.groups->declare(line_);
     line_.group("Robustness");
     addRobustOptions();
     line_.group("Search");
@@ -192,8 +194,8 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     line_.essential({"--version", "--sensor",     "--fixed",   "--strategy",  "--mount",
                      "--z",       "--keep-out",   "--keep-in", "--objective", "--zone",
                      "--weight",  "--redundancy", "--target",  "--budget",    "--time-limit",
-                     "--refine",  "--curve",      "--report",  "--storey",    "--output",
-                     "--quiet",   "--threads",    "--seed"});
+                     "--refine",  "--report",     "--storey",  "--output",    "--quiet",
+                     "--threads", "--seed"});
     line_.parse(argc, argv);
     options_.task =
         tool_extensions.task(line_, {options_.common, options_.rules, options_.operands});
@@ -320,16 +322,6 @@ void ArrangeCommand::addGoalOptions() {
         },
         "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
         Enters::History);
-    line_.texts(
-        "--facing", "ZONE[,DEG[,HEADING]]", options_.zones.facing,
-        "floor of this zone counts only where a camera sees faces: within this angle (45deg) "
-        "of the heading in which people walk there, by default through the doors on its "
-        "border; door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg)",
-        Enters::History);
-    line_.texts("--privacy", "ZONE[,D]", options_.zones.privacy,
-                "no camera may see these zones (globs allowed), or see them with at least D pixels "
-                "a metre, a number or a density class",
-                Enters::History);
     line_.meters("--plane", how.plane, 0, 1000,
                  "height of the plane that all sensors but level lasers cover, 0 is the floor",
                  Enters::History);

@@ -8,6 +8,7 @@
 
 #include "arrange/arrange.h"
 #include "arrange/strategy.h"
+#include "cli/arrange_group.h"
 #include "cli/batch.h"
 #include "cli/command_line.h"
 #include "cli/common_options.h"
@@ -22,8 +23,6 @@ namespace ispace {
 struct ZoneWords {
     std::vector<std::string> targets, keep_out, keep_in;
     std::vector<std::string> weights;  ///< ZONE=W
-    std::vector<std::string> facing;   ///< ZONE[,DEG[,HEADING]]
-    std::vector<std::string> privacy;  ///< ZONE[,D]
 };
 
 struct ArrangeToolOptions {
@@ -35,6 +34,7 @@ struct ArrangeToolOptions {
     ZoneWords zones;
     std::shared_ptr<const ObjectiveGroup> objective;  ///< of an extension; null: none
     std::shared_ptr<const ProofGroup> proof;          ///< likewise
+    std::shared_ptr<ArrangeExtensions> groups;        ///< of extensions
     std::string places_file;
     std::vector<std::string> robust_rooms;  ///< of --robust rooms:
     std::string trace_file, curve_file, mps_file, report_file, heat_file;
@@ -73,7 +73,6 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void settleStrategy();
     void settleRobust();
     void settleObjective();
-    void settleCameraRules();
     void settleDemand();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
     void settleFiles() const;

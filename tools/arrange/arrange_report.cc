@@ -14,7 +14,6 @@
 #include "report/map/map.h"
 #include "report/page/coverage_page.h"
 #include "site/site_page.h"
-#include "site/site_rules.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -163,40 +162,19 @@ CoverageOptions measuredAs(const ArrangeOptions& how) {
     return {.plane = how.plane, .density = how.pixel_density};
 }
 
-/// Returns the results of --facing and --privacy by storey, as measureSiteRules(); empty without
-/// these.
-std::vector<CameraRules> rulesByStorey(const ArrangeWork& work, const Arrangement& arrangement,
-                                       const SiteCoverage& coverage) {
-    if (work.how.facing.empty() && work.how.privacy.empty()) return {};
-    std::vector<CameraRules> rules(coverage.storeys.size());
-    for (std::size_t i = 0; i < rules.size(); ++i) {
-        rules[i].facing =
-            measureFacing(*coverage.floors[i], coverage.storeys[i], work.goals[i].facing);
-        const std::string before = wholeId(work.input.building.document.storeys[i], "");
-        for (PrivacyResult result : arrangement.privacy) {
-            if (!result.zone.starts_with(before)) continue;
-            result.zone.erase(0, before.size());
-            rules[i].privacy.push_back(std::move(result));
-        }
-    }
-    return rules;
+/// Returns a layout as groups of extensions see it.
+ArrangedSite judgedSite(const ArrangeWork& work, const Arrangement& arrangement,
+                        const SiteScene& placed, const SiteCoverage* coverage) {
+    return {work.input, *work.site, work.groups, work.how, arrangement, placed, coverage};
 }
 
 }  // namespace
 
-std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangement& arrangement) {
-    if (work.how.facing.empty() && work.how.privacy.empty()) return std::nullopt;
-    CameraRules rules{{}, arrangement.privacy};
-    if (work.how.facing.empty()) return rules;
-    const SiteCoverage coverage =
-        measureSite(placedSite(work, arrangement.sensors), measuredAs(work.how));
-    const std::vector<CameraRules> storeys = rulesByStorey(work, arrangement, coverage);
-    for (std::size_t i = 0; i < storeys.size(); ++i)
-        for (FacingResult result : storeys[i].facing) {
-            result.rule.zone = work.input.idOf(i, result.rule.zone);
-            rules.facing.push_back(std::move(result));
-        }
-    return rules;
+ArrangeFindings findingsOf(const ArrangeToolOptions& options, const ArrangeWork& work,
+                           const Arrangement& arrangement) {
+    if (!options.groups->isAsked()) return {};
+    const SiteScene placed = placedSite(work, arrangement.sensors);
+    return options.groups->judge(judgedSite(work, arrangement, placed, nullptr));
 }
 
 namespace {
@@ -256,10 +234,8 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
                        const std::string& command) {
     const SiteScene site = laidOut(work, arrangement, layout);
     const SiteCoverage coverage = measureSite(site, measuredAs(work.how));
-    const std::vector<CameraRules> rules = rulesByStorey(work, arrangement, coverage);
     const std::optional<SiteObjectives> objectives = objectivesIn(work, site, coverage);
-    SiteParts parts;
-    addRules(parts, site, coverage, rules);
+    SiteParts parts = options.groups->judge(judgedSite(work, arrangement, site, &coverage)).parts;
     if (objectives) addSections<ObjectivesSection>(parts, objectives->storeys, objectives->all);
     const std::string suffix = suffixOf(options.report_file);
     if (suffix == "json") return siteCoverageJson(site, coverage, parts);

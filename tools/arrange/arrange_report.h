@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "arrange/arrange_run.h"
-#include "report/camera_rules_report.h"
+#include "cli/arrange_group.h"
 #include "report/objective_report.h"
 
 namespace ispace {
@@ -38,7 +38,8 @@ void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
 std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
                                              const Arrangement& arrangement);
 
-/// Judges --facing and --privacy on the written layout, by exact regions; empty without them.
-std::optional<CameraRules> cameraRulesOf(const ArrangeWork& work, const Arrangement& arrangement);
+/// Returns what groups of extensions find out about the written layout.
+ArrangeFindings findingsOf(const ArrangeToolOptions& options, const ArrangeWork& work,
+                           const Arrangement& arrangement);
 
 }  // namespace ispace

@@ -74,24 +74,6 @@ void takeGoals(const ArrangeToolOptions& options, ArrangeWork& work) {
             how.weights.weights.emplace_back(zone, weight);
         });
     }
-    how.facing.clear();
-    for (const FacingRule& rule : options.how.facing)
-        forEachRoomOf(input, "--facing", rule.zone, [&](std::size_t room, const std::string& own) {
-            FacingRule here = rule;
-            here.zone = own;
-            for (FacingRule& found : facingIn(room_of(room), {&here, 1})) {
-                work.goals[room].facing.push_back(found);
-                how.facing.push_back(std::move(found));
-            }
-        });
-    for (const PrivacyRule& rule : how.privacy)
-        forEachRoomOf(input, "--privacy", rule.zones,
-                      [&](std::size_t room, const std::string& own) {
-                          PrivacyRule here = rule;
-                          here.zones = own;
-                          static_cast<void>(privateZones(here, room_of(room)));
-                          work.goals[room].privacy.push_back(std::move(here));
-                      });
     for (RoomGoals& goals : work.goals) {
         goals.counts = how.weights.targets.empty() || !goals.weights.targets.empty();
         goals.takes_sensors = how.mount.keep_in.empty() || !goals.keep_in.empty();
@@ -227,15 +209,6 @@ void takeWay(ArrangeWork& work) {
 
 namespace {
 
-/// Tells that a target counts the floor without rules of facing, too.
-void noteWholeFloor(const ArrangeToolOptions& options) {
-    if (!options.how.target || options.how.facing.empty() || !options.zones.targets.empty()) return;
-    tell(options.common, "arrange",
-         "--target is of all floor: faces count in the zones of --facing, plain sight elsewhere; "
-         "to count those zones alone, add --zone '" +
-             printable(options.how.facing.front().zone) + '\'');
-}
-
 /// \throws UsageError for a sensor whose id names a storey, in a building or a storey of one
 void mustHavePlainIds(const SiteInput& input, const std::vector<SensorGroup>& groups) {
     if (input.isOneRoom() && input.storey.empty()) return;
@@ -277,7 +250,6 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     std::vector<const Scene*> scenes;
     for (const auto& room : input.rooms()) scenes.push_back(room.get());
     work.groups = groupsToPlace(scenes, added, devices, open);
-    noteWholeFloor(options);
     if (work.groups.empty())
         throw UsageError(
             "nothing to place: give --sensor MODEL[:COUNT], such as dome-2.8-1080p:4, or a LAYOUT "
@@ -288,6 +260,7 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     if (!input.isOneRoom() && input.building.devices.devices().empty())
         input.building.devices = devices;
     takeGoals(options, work);
+    options.groups->aim(input, work.how, work.goals);
     takePlaces(options, work);
     takeRooms(options, work);
     takeDemand(options, work);
@@ -410,8 +383,8 @@ void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
 }  // namespace
 
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
-    if (!options.how.facing.empty() && options.how.plane == 0)
-        tell(options.common, "arrange", std::string(kFacesOnFloor));
+    for (const std::string& note : options.groups->notes(work.how))
+        tell(options.common, "arrange", note);
     if (const std::string hint = hintAlongWalls(work); !hint.empty())
         warn(options.common, "arrange", hint);
     for (std::size_t i = 0; i < work.input.rooms().size(); ++i)

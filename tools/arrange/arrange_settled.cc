@@ -12,7 +12,6 @@
 #include "base/error.h"
 #include "cli/outputs.h"
 #include "cli/storey_operands.h"
-#include "coverage/camera_rules.h"
 #include "report/curve_chart.h"
 
 namespace ispace {
@@ -80,7 +79,7 @@ void ArrangeCommand::settle() {
     if (options_.proof) options_.proof->take(line_, how);
     settleRobust();
     settleObjective();
-    settleCameraRules();
+    options_.groups->take(line_, how);
     settleDemand();
     how.wants_curve = !options_.curve_file.empty();
     how.wants_trace = !options_.trace_file.empty();
@@ -133,40 +132,18 @@ void ArrangeCommand::settleObjective() {
                     std::string(other));
     };
     constexpr std::string_view kOther[] = {
-        "--target", "--budget", "--refine", "--connected",  "--reso",        "--judge",
-        "--proof",  "--shard",  "--resume", "--robust",     "--crowd",       "--facing",
-        "--curve",  "--heat",   "--trace",  "--export-mps", "--alternatives"};
+        "--target", "--budget", "--refine",     "--connected",   "--reso",  "--judge",
+        "--proof",  "--shard",  "--resume",     "--robust",      "--crowd", "--curve",
+        "--heat",   "--trace",  "--export-mps", "--alternatives"};
     constexpr std::string_view kOfFloor[] = {"--zone", "--weight"};
     constexpr std::string_view kOfTimes[] = {"--redundancy"};
     refuse(kOther);
+    refuse(options_.groups->ofFloor());
     if (const auto of_option = objectives_.asked()) refuse(std::vector{of_option->option()});
     if (objective.of == ObjectiveChoice::Of::Path)
         refuse(kOfFloor);
     else
         refuse(kOfTimes);
-}
-
-void ArrangeCommand::settleCameraRules() {
-    ArrangeOptions& how = options_.how;
-    for (const std::string& text : options_.zones.facing)
-        how.facing.push_back(ofOption("--facing", [&] { return parseFacing(text); }));
-    for (const std::string& text : options_.zones.privacy)
-        how.privacy.push_back(ofOption("--privacy", [&] { return parsePrivacy(text); }));
-    for (const FacingRule& rule : how.facing)
-        if (rule.required)
-            throw UsageError("--facing: a share is asked for by --target; leave out =SHARE");
-    const auto refuse = [this](const std::string& rule, std::span<const char* const> others) {
-        for (const char* other : others)
-            if (line_.given(other))
-                throw UsageError(rule + " and " + other + " do not go together: leave out one");
-    };
-    constexpr const char* kNotFacing[] = {"--refine", "--robust", "--crowd", "--proof", "--judge"};
-    constexpr const char* kNotPrivate[] = {"--refine", "--proof", "--shard", "--resume",
-                                           "--export-mps"};
-    if (!how.facing.empty()) refuse("--facing", kNotFacing);
-    if (!how.privacy.empty()) refuse("--privacy", kNotPrivate);
-    if (!how.privacy.empty() && how.robust.of == RobustChoice::Of::Rooms)
-        throw UsageError("--privacy is about one room: leave out --robust rooms");
 }
 
 void ArrangeCommand::settleDemand() {
@@ -179,15 +156,17 @@ void ArrangeCommand::settleDemand() {
     if (!options_.objective) return;
     const std::string name = of_option ? std::string(of_option->option())
                                        : "--objective " + std::string(options_.objective->word());
-    constexpr const char* kOfFloor[] = {"--zone",  "--weight",   "--facing", "--robust",
-                                        "--crowd", "--refine",   "--proof",  "--judge",
-                                        "--reso",  "--connected"};
+    std::vector<std::string_view> of_floor = {"--zone",  "--weight", "--robust",
+                                              "--crowd", "--refine", "--proof",
+                                              "--judge", "--reso",   "--connected"};
+    const std::vector<std::string_view> of_groups = options_.groups->ofFloor();
+    of_floor.insert(of_floor.end(), of_groups.begin(), of_groups.end());
     const ObjectiveGroup::Counted counted = options_.objective->counted();
-    for (const char* option : kOfFloor)
-        if (line_.given(option) &&
-            std::ranges::find(counted.options, std::string_view(option)) == counted.options.end())
+    for (const std::string_view option : of_floor)
+        if (line_.given(std::string(option)) &&
+            std::ranges::find(counted.options, option) == counted.options.end())
             throw UsageError(name + " counts " + std::string(counted.what) + ": leave out " +
-                             option);
+                             std::string(option));
 }
 
 void ArrangeCommand::checkStrategyOption(const StrategyRow& row,

@@ -73,13 +73,12 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
 
 /// Reports the layout, and unmet requests.
 void report(const ArrangeToolOptions& options, const ArrangeWork& work,
-            const Arrangement& arrangement, const CameraRules* rules) {
+            const Arrangement& arrangement, const ArrangeFindings& findings) {
     if (!options.common.quiet)
         writeLines("arrange", reportText(work, arrangement) +
                                   alternativesText(options.common.output, arrangement));
-    if (rules != nullptr)
-        for (const JudgedRule& rule : judgedRules(*rules))
-            tell(options.common, "arrange", rule.rule + ": " + rule.finding);
+    for (const ArrangeFindings::Line& line : findings.lines)
+        tell(options.common, "arrange", line.text);
     if (const auto objectives = objectivesOf(work, arrangement);
         objectives && !options.common.quiet)
         for (const NamedFigure& figure : namedFigures(*objectives))
@@ -94,14 +93,13 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
                 formatDouble(arrangement.cost));
 }
 
-/// \throws UnmetError as checkGoals(), and for a rule of cameras that is not met
+/// \throws UnmetError as checkGoals(), and for findings that are not met
 void checkAll(const ArrangeToolOptions& options, const ArrangeWork& work,
-              const Arrangement& arrangement, const std::optional<CameraRules>& rules) {
+              const Arrangement& arrangement, const ArrangeFindings& findings) {
     checkGoals(options, work, arrangement);
     std::string unmet;
-    for (const JudgedRule& rule : rules ? judgedRules(*rules) : std::vector<JudgedRule>())
-        if (rule.is_required && !rule.is_met)
-            unmet.append(unmet.empty() ? "" : "; ").append(rule.rule + ": " + rule.finding);
+    for (const ArrangeFindings::Line& line : findings.lines)
+        if (line.is_unmet) unmet.append(unmet.empty() ? "" : "; ").append(line.text);
     if (!unmet.empty()) throw UnmetError(unmet);
 }
 
@@ -193,16 +191,17 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     }
     if (results && !results->trouble().empty())
         warn(options.common, "arrange", "results could not be stored: " + results->trouble());
-    const auto rules = shard ? std::nullopt : cameraRulesOf(work, arrangement);
+    const ArrangeFindings findings =
+        shard ? ArrangeFindings() : findingsOf(options, work, arrangement);
     if (shard)
         writeDependencies(options.common, work.files);
     else
-        report(options, work, arrangement, rules ? &*rules : nullptr);
+        report(options, work, arrangement, findings);
     if (signal != 0) endBySignal(signal);
     if (shard)
         logInfo(options.common, "arrange", "shard " + shard->text() + " is written");
     else
-        checkAll(options, work, arrangement, rules);
+        checkAll(options, work, arrangement, findings);
 }
 
 /// Arranges the sensors of one scene of a list.
@@ -226,7 +225,7 @@ void arrangeJob(const ArrangeCommand& command, const BatchJob& job, const Common
     json.key("candidates").value(found.candidates).key("unplaced").value(found.unplaced);
     json.key("reached").value(found.is_reached).key("complete").value(found.is_complete);
     outcome.line = json.endObject().take() + '\n';
-    checkAll(options, work, found, cameraRulesOf(work, found));
+    checkAll(options, work, found, findingsOf(options, work, found));
 }
 
 void arrangeSensors(const ArrangeCommand& command) {

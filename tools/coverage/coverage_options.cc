@@ -31,7 +31,7 @@ constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
 struct Words {
     std::string to, cells_by, color, fans;
     CellWords cells;
-    std::vector<std::string> requirements, facing, privacy, paths;
+    std::vector<std::string> requirements, paths;
 };
 
 /// Parses `30` or `30,3`.
@@ -123,10 +123,9 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report",  "--material", "--prices",  "--title",
-                                       "--project", "--client",   "--author",  "--logo",
-                                       "--paper",   "--compare",  "--run",     "--facing",
-                                       "--privacy", "--path",     "--localise"};
+    std::vector<const char*> single = {
+        "--report", "--material", "--prices",  "--title", "--project", "--client",  "--author",
+        "--logo",   "--paper",    "--compare", "--run",   "--path",    "--localise"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     for (const std::string& option : o.groups->options()) single.push_back(option.c_str());
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
@@ -181,17 +180,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
                "indoor floor, free:95%, zone:NAME=95%; by cameras of a density class or level "
                "identify:95%, discern:NAME=95%" +
                    o.groups->requirements(),
-               Enters::History);
-    line.texts(
-        "--facing", "ZONE[,DEG[,HEADING]][=SHARE]", words.facing,
-        "report the share of a zone where cameras see faces: within this angle (45deg) of "
-        "the heading in which people walk there, by default through the doors on its border; "
-        "door:GLOB[,M][,DEG] is the floor within M of doors (1.5m, 45deg); exit with 3 if "
-        "less than SHARE",
-        Enters::History);
-    line.texts("--privacy", "ZONE[,D]", words.privacy,
-               "exit with 3 if a camera sees some of these zones (globs allowed), or sees it with "
-               "at least D pixels a metre, a number or a density class",
                Enters::History);
     line.file("--junit", "FILE", o.junit,
               "write the results of the requirements there, as XML that CI servers read",
@@ -257,17 +245,13 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
         if (!o.groups->takesRequirement(text)) o.requirements.push_back(parseRequirement(text));
-    for (const std::string& text : words.facing)
-        o.facing.push_back(ofOption("--facing", [&] { return parseFacing(text); }));
-    for (const std::string& text : words.privacy)
-        o.privacy.push_back(ofOption("--privacy", [&] { return parsePrivacy(text); }));
     for (const std::string& text : words.paths)
         o.paths.push_back(ofOption("--path", [&] { return parseWay(text); }));
     o.measure.whole_densities =
-        !o.facing.empty() || !o.privacy.empty() ||
+        o.groups->wantsWholeDensities() ||
         std::any_of(o.requirements.begin(), o.requirements.end(),
                     [](const Requirement& requirement) { return requirement.density; });
-    if (line.given("--junit") && words.requirements.empty() && o.privacy.empty())
+    if (line.given("--junit") && words.requirements.empty() && !o.groups->judgesAlone())
         throw UsageError("--junit writes what became of requirements: give --require");
     // The reports of a list may go to a file.
     if (isStdout(o.junit) && (o.batch.list.empty() || isStdout(o.common.output)))

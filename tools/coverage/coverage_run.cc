@@ -51,7 +51,6 @@ const Storey& storeyOf(const SiteInput& input, std::size_t room) {
 SiteParts SiteResults::parts(const SiteScene& building) const {
     SiteParts parts;
     parts.storeys.resize(coverage.storeys.size());
-    addRules(parts, building, coverage, rules);
     if (objectives_sum) addSections<ObjectivesSection>(parts, objectives, *objectives_sum);
     if (run) addRun(parts, building, *run);
     for (std::size_t i = 0; i < found.parts.storeys.size(); ++i)
@@ -72,8 +71,6 @@ std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
 void nameInRoom(CoverageToolOptions& options, const SiteInput& input) {
     const auto take = [&input](std::string& zone) { zone = inOwnStorey(input, zone); };
     for (Requirement& requirement : options.requirements) take(requirement.zone);
-    for (FacingRule& rule : options.facing) take(rule.zone);
-    for (PrivacyRule& rule : options.privacy) take(rule.zones);
     for (PathChoice& way : options.paths) {
         take(way.from);
         take(way.to);
@@ -243,15 +240,6 @@ void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
     measureObjectives(options, input, results);
 }
 
-void measureRules(const CoverageToolOptions& options, const SiteInput& input,
-                  SiteResults& results) {
-    if (options.facing.empty() && options.privacy.empty()) return;
-    results.rules = measureSiteRules(input.building, results.coverage, options.measure,
-                                     options.facing, options.privacy);
-    if (!options.facing.empty() && options.measure.plane == 0)
-        tell(options.common, "coverage", std::string(kFacesOnFloor));
-}
-
 namespace {
 
 /// Returns the content of a model: the records of the scene, below the history of both inputs and
@@ -383,9 +371,6 @@ std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const SiteSc
     std::vector<JunitCase> verdicts = judge(options.requirements, building, results.coverage);
     for (const JudgedShare& one : results.found.judged)
         verdicts.push_back(caseOf(one.requirement, one.verdict.is_met, one.verdict.text));
-    for (const JudgedRule& rule : judgedInSite(building, results.rules))
-        if (rule.is_required)
-            verdicts.push_back(caseOf(rule.rule, rule.is_met, rule.rule + ": " + rule.finding));
     return verdicts;
 }
 

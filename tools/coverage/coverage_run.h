@@ -14,7 +14,6 @@
 #include "coverage/coverage_options.h"
 #include "report/objective_report.h"
 #include "site/site_coverage.h"
-#include "site/site_rules.h"
 #include "site/site_run_coverage.h"
 
 namespace ispace {
@@ -24,8 +23,7 @@ struct SiteResults {
     SiteCoverage coverage;
     std::optional<SiteCoverage> other;  ///< of --compare
     std::optional<SiteRunCoverage> run;
-    std::vector<CameraRules> rules;  ///< by storey; empty: none
-    std::vector<TriedPose> tried;    ///< of --trace
+    std::vector<TriedPose> tried;  ///< of --trace
     std::vector<ObjectiveFigures> objectives;
     std::optional<ObjectiveFigures> objectives_sum;
     CoverageFindings found;  ///< of extensions
@@ -37,7 +35,7 @@ struct SiteResults {
 /// Returns the operands, or what a record of --run holds: its scene, or its building.
 std::vector<std::string> operandsOf(const CoverageToolOptions& options);
 
-/// Takes the storey from the zones of requirements, rules and ways of a room that is one: of
+/// Takes the storey from the zones of requirements and ways of a room that is one: of
 /// `ground/entry` the room has `entry`.
 void nameInRoom(CoverageToolOptions& options, const SiteInput& input);
 
@@ -60,9 +58,6 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteI
 void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
                    std::vector<std::string>& files, SiteResults& results);
 
-/// Measures --facing and --privacy. \throws UsageError for unknown zones
-void measureRules(const CoverageToolOptions& options, const SiteInput& input, SiteResults& results);
-
 /// Writes -o: a file of a room, a page of all storeys, or a file for each. \pre there is a format
 void writeProducts(const CoverageToolOptions& options, const SiteInput& input,
                    const SiteResults& results);
@@ -74,8 +69,7 @@ std::vector<Diagnostic> sensorFindings(const SiteScene& building);
 /// precedes the requirement's text. \pre mustHaveZone()
 std::vector<JunitCase> judge(std::span<const Requirement> requirements, const SiteScene& building,
                              const SiteCoverage& coverage, const std::string& name = "");
-/// Returns a verdict for each requirement that extensions judge and each rule that requires
-/// something, too.
+/// Returns a verdict for each that extensions judge, too.
 std::vector<JunitCase> judgeAll(const CoverageToolOptions& options, const SiteScene& building,
                                 const SiteResults& results);
 

@@ -76,7 +76,8 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
     for (const Requirement& requirement : options.requirements)
         add(requirementPhrase(requirement),
             checkRequirement(requirement, input.building, coverage));
-    for (const JudgedShare& one : results.found.judged) add(one.phrase, one.verdict);
+    for (const JudgedShare& one : results.found.judged)
+        if (!one.phrase.empty()) add(one.phrase, one.verdict);
     page.parts = results.parts(input.building);
     page.findings = sensorFindings(input.building);
     page.media =
@@ -111,7 +112,6 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
         writeProducts(options, input, results);
         writeDependencies(options.common, files);
     }
-    measureRules(options, input, results);
     // Last: once a signal has ended a search, only the results are written.
     options.groups->measure(site, results.found, true);
     const std::vector<JunitCase> verdicts = judgeAll(options, input.building, results);

@@ -176,7 +176,7 @@ void measure(Arrangement& result, CoverageModel& model) {
         result.value = model.shareOf(std::span<const CountedView>(views));
     result.is_value_by_cells = result.value && options.indoor_only && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
-                               !options.robust.isAsked() && options.facing.empty() &&
+                               !options.robust.isAsked() && !options.cover_rule &&
                                !options.demand && options.objective.isCoverage();
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
@@ -416,82 +416,6 @@ Arrangement arrangeFromResults(const ArrangeSite& site, const std::vector<Sensor
     }
 }
 
-/// A camera of another room, and what it sees of a private zone, m2 by cells.
-struct CameraBeyond {
-    std::size_t room = 0;
-    std::string id;
-    double seen = 0;
-};
-
-/// Finds the cameras of other rooms that see a zone.
-std::vector<CameraBeyond> camerasBeyond(const ArrangeSite& site,
-                                        const std::vector<SensorGroup>& groups,
-                                        const Arrangement& found, std::size_t to,
-                                        const std::string& zone, double density) {
-    std::vector<CameraBeyond> cameras;
-    if (site.sight == nullptr || !site.sight->joinsRooms()) return cameras;
-    const Environment& room = site.rooms[to].scene->environment;
-    const Target target = makeTarget(room, RoomCells(), kScanHeight);
-    const std::vector<double> inside =
-        weightsOfCells(target, {.targets = {readZone(zone, room)}, .weights = {}});
-    const double cell = target.grid.limits.width() * target.grid.limits.depth() /
-                        static_cast<double>(target.grid.size());
-    for (std::size_t from = 0; from < site.rooms.size(); ++from) {
-        if (from == to) continue;
-        for (Sensor sensor :
-             withPlaced(*site.rooms[from].scene, groups, found.sensors, from).sensors) {
-            auto* const camera = std::get_if<Camera>(&sensor.model);
-            if (camera == nullptr) continue;
-            *camera = withDensity(*camera, density);
-            if (!site.sight->maySee(from, sensor, to)) continue;
-            CellParts parts;
-            site.sight->look(from, {&sensor, 1}, to, target.grid, parts);
-            CameraBeyond beyond{from, sensor.id};
-            for (const CellRun& run : parts.runs)
-                for (std::size_t i = run.first; i < run.end; ++i)
-                    if (inside[i] > 0) beyond.seen += cell;
-            if (beyond.seen > 0) cameras.push_back(std::move(beyond));
-        }
-    }
-    return cameras;
-}
-
-/// Measures the privacy of a layout, and forbids the poses of placed cameras that see zones.
-/// \param whole the rooms with sensors that see all that they can \param stricter receives poses
-std::vector<PrivacyResult> forbidWhatSees(const ArrangeSite& whole,
-                                          const std::vector<SensorGroup>& groups,
-                                          const Arrangement& found, double plane,
-                                          ArrangeSite& stricter) {
-    std::vector<PrivacyResult> all;
-    for (std::size_t i = 0; i < whole.rooms.size(); ++i) {
-        const SiteRoom& room = whole.rooms[i];
-        if (room.goals.privacy.empty()) continue;
-        std::vector<PrivacyResult> results = measurePrivacy(
-            withPlaced(*room.scene, groups, found.sensors, i), plane, room.goals.privacy);
-        std::set<std::string> seeing;
-        for (PrivacyResult& result : results) {
-            if (!isMet(result)) seeing.insert(result.cameras.begin(), result.cameras.end());
-            const auto beyond = camerasBeyond(whole, groups, found, i, result.zone, result.density);
-            if (!room.id.empty()) {
-                result.zone.insert(0, room.id + '/');
-                for (std::string& camera : result.cameras) camera.insert(0, room.id + '/');
-            }
-            for (const CameraBeyond& camera : beyond) {
-                if (result.seen) result.seen = std::min(*result.seen + camera.seen, result.area);
-                result.cameras.push_back(whole.rooms[camera.room].id + '/' + camera.id);
-                for (const Placement& placement : found.sensors)
-                    if (placement.room == camera.room && placement.sensor == camera.id)
-                        stricter.rooms[camera.room].goals.forbidden.push_back(placement.pose);
-            }
-            all.push_back(std::move(result));
-        }
-        for (const Placement& placement : found.sensors)
-            if (placement.room == i && seeing.count(placement.sensor) > 0)
-                stricter.rooms[i].goals.forbidden.push_back(placement.pose);
-    }
-    return all;
-}
-
 std::size_t countForbidden(const ArrangeSite& site) {
     std::size_t count = 0;
     for (const SiteRoom& room : site.rooms) count += room.goals.forbidden.size();
@@ -531,16 +455,18 @@ Arrangement arrange(const ArrangeSite& site, const std::vector<SensorGroup>& gro
                 *limited.rooms.front().scene, limited_groups, options, progress))
             return std::move(*found);
     }
-    if (options.privacy.empty())
+    if (!options.rejected)
         return arrangeFromResults(limited, limited_groups, options, progress, mps);
-    // Cells may miss what the exact regions see.
     constexpr std::size_t kMaxRounds = 100;
     for (std::size_t round = 1;; ++round) {
         const std::size_t before = countForbidden(limited);
         Arrangement found = arrangeFromResults(limited, limited_groups, options, progress, mps);
-        found.privacy = forbidWhatSees(site, groups, found, options.plane, limited);
-        for (Arrangement& other : found.alternatives)
-            other.privacy = forbidWhatSees(site, groups, other, options.plane, limited);
+        const auto forbid = [&](const Arrangement& layout) {
+            for (const auto& [room, pose] : options.rejected(site, groups, layout))
+                limited.rooms[room].goals.forbidden.push_back(pose);
+        };
+        forbid(found);
+        for (const Arrangement& other : found.alternatives) forbid(other);
         if (countForbidden(limited) == before || progress.stopped() || round == kMaxRounds)
             return found;
     }

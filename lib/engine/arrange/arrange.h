@@ -24,7 +24,6 @@
 #include "base/cell_set.h"
 #include "base/error.h"
 #include "base/message.h"
-#include "coverage/camera_rules.h"
 #include "coverage/least_seen_path.h"
 #include "coverage/target.h"
 #include "scene/scene.h"
@@ -92,6 +91,8 @@ struct ObjectiveChoice {
     }
 };
 
+struct Arrangement;
+
 struct ArrangeOptions {
     Strategy strategy = Strategy::All;
     std::optional<int> x, y;      ///< Grid: interior lines; default by eq. (4.1) and (4.2)
@@ -111,11 +112,14 @@ struct ArrangeOptions {
     bool is_connected = false;
     RobustChoice robust;
     ObjectiveChoice objective;
-    /// Cameras must not see these zones. Candidates that see a cell of one are left out; layouts
-    /// that see more than kMinPiece are searched again without the cameras that do.
-    std::vector<PrivacyRule> privacy;
-    /// In these zones floor counts only where a camera sees faces. Headings are known.
-    std::vector<FacingRule> facing;
+    std::vector<UnseenFloor> unseen;
+    MakeCoverRule cover_rule;  ///< empty: each sensor covers the cells that it sees
+    /// Returns poses of a layout that must not stand, such as those of cameras that see unseen
+    /// floor between the centres of cells: the search is repeated without these candidates until
+    /// there are none. Empty: all may stand. \param found a layout of the site
+    std::function<std::vector<RoomPose>(const ArrangeSite& site, const std::vector<SensorGroup>&,
+                                        const Arrangement& found)>
+        rejected;
     /// Counts instead of the floor; the zones, weights and cells above then do not. Null: none.
     /// Of several rooms: that of any of them, which says what is asked; see RoomGoals.
     std::shared_ptr<const Demand> demand;
@@ -214,9 +218,6 @@ struct Arrangement {
     /// Of the written poses; the bound is that of the worst case, or of the mean.
     std::optional<RobustValues> robust;
 
-    /// With ArrangeOptions::privacy: of the whole layout, exact.
-    std::vector<PrivacyResult> privacy;
-
     /// Ids of sensors, across the site, that can all be removed without loss of value.
     std::vector<std::string> idle;
 
@@ -249,7 +250,7 @@ struct Arrangement {
 /// options.weights, then runs search() or minimumCostCover(), and refine() if asked. `mps`:
 /// receives the model before the search. A shard (options.search.share) stores its steps in
 /// the job results and returns an arrangement without sensors.
-/// What the options ask of a room (weights, zones, privacy, facing) is taken from its goals; those
+/// What the options ask of a room (weights, zones, rules of views) is taken from its goals; those
 /// of the options say whether it is asked of any room.
 /// \throws UnmetError if a kind has no valid site or the budget buys no sensor, UsageError if the
 ///         candidates do not fit in memory, or for what is about one room alone

@@ -16,8 +16,8 @@
 #include "arrange/beam_cells.h"
 #include "arrange/case_room.h"
 #include "arrange/demand.h"
-#include "arrange/facing_cells.h"
 #include "arrange/sensor_group.h"
+#include "arrange/view_rules.h"
 #include "base/error.h"
 #include "base/number.h"
 #include "base/packed.h"
@@ -122,7 +122,7 @@ struct CandidateViews::Data {
     CellWindow window = {};                // of the counted cells
     const RayWorld* beam_world = nullptr;  // of lasers that see by beams; else null
     const SiteErrors* errors = nullptr;    // of mounting; null: none
-    const FacingCells* facing = nullptr;   // null: none
+    const CoverRule* rule = nullptr;       // null: none
     const Demand* demand = nullptr;        // null: its cells are those of the grid
     const RayScenes* worlds = nullptr;     // of the demand
     SiteSights* sights = nullptr;          // null: of this tilt alone
@@ -217,7 +217,7 @@ struct CandidateViews::Data {
 CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
                                const SensorModel& device, const Pose3& mount,
                                const CellSet* counted, const std::optional<ByBeams>& by_beams,
-                               const SiteErrors* errors, const FacingCells* facing)
+                               const SiteErrors* errors, const CoverRule* rule)
     : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
                      isOmnidirectional(device, mount), scansSlice(Sensor{"", device, mount}),
                      counted != nullptr && counted->count() < counted->size()
@@ -225,7 +225,7 @@ CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
                          : std::nullopt}) {
     if (data_->counted) data_->window = CellWindow::of(grid, *counted);
     data_->errors = errors;
-    data_->facing = facing;
+    data_->rule = rule;
     sight.prepare({"", device, mount});
     if (!by_beams || !data_->looks_in_slice) return;
     data_->looks_in_slice = false;
@@ -407,7 +407,7 @@ class Scanner {
         else
             data.lookAtPlane(site, turned_[room], parts);
         if (data.counted) data.counted->keepIn(parts);
-        if (data.facing != nullptr) data.facing->keepFaces(data.device, site.place, parts);
+        if (data.rule != nullptr) data.rule->keepCovered(data.device, site.place, parts);
     }
 
     /// Joins the views of all cases, part by part.

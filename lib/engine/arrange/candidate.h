@@ -67,8 +67,8 @@ class PosedCandidates : public CandidateSet {
     std::vector<Angle> headings_;  // by candidate
 };
 
+class CoverRule;
 class Demand;
-class FacingCells;
 class SiteErrors;
 struct KnownSight;
 
@@ -125,11 +125,11 @@ class CandidateViews {
     ///        other cells, which saves memory
     /// \param by_beams empty: lasers in a slice see their whole visible area
     /// \param errors of mounting; null: sensors have the poses of their candidates
-    /// \param facing cells in which only faces count; null: none
+    /// \param rule of cells that some sensors alone cover; null: none
     CandidateViews(const VisibleArea& sight, const Grid& grid, const SensorModel& device,
                    const Pose3& mount, const CellSet* counted = nullptr,
                    const std::optional<ByBeams>& by_beams = {}, const SiteErrors* errors = nullptr,
-                   const FacingCells* facing = nullptr);
+                   const CoverRule* rule = nullptr);
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;
     CandidateViews& operator=(const CandidateViews&) = delete;

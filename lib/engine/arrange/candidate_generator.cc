@@ -12,7 +12,6 @@
 #include "arrange/strategy.h"
 #include "base/error.h"
 #include "base/number.h"
-#include "coverage/camera_rules.h"
 #include "env/zone.h"
 #include "scene/sensor/camera.h"
 
@@ -61,12 +60,11 @@ struct SitesAtHeight {
 
 }  // namespace
 
-CellSet privateCells(const PrivacyRule& rule, const Environment& environment,
-                     const Target& target) {
+CellSet unseenCells(const UnseenFloor& floor, const Target& target) {
     CellSet cells(target.grid.size());
-    for (const std::string& zone : privateZones(rule, environment)) {
+    for (const NamedZone& zone : floor.zones) {
         const std::vector<double> inside =
-            weightsOfCells(target, {.targets = {readZone(zone, environment)}, .weights = {}});
+            weightsOfCells(target, {.targets = {zone}, .weights = {}});
         for (std::size_t i = 0; i < inside.size(); ++i)
             if (inside[i] > 0) cells.set(i);
     }
@@ -81,7 +79,7 @@ struct CandidatePool::Data {
     const ArrangeOptions& options;
     Progress& progress;
     CaseRooms rooms;
-    const FacingCells* facing;
+    const CoverRule* rule;
     const Demand* demand;
     VisibleArea sight;
     std::map<double, std::unique_ptr<SiteValidity>> validities = {};
@@ -220,12 +218,12 @@ struct CandidatePool::Data {
         return text;
     }
 
-    /// Removes candidates that see a cell of a private zone, and those that are forbidden.
+    /// Removes candidates that see a cell of unseen floor, and those that are forbidden.
     [[nodiscard]] std::vector<Site> allowedSites(const SensorClass& kind, const Pose3& mount,
                                                  const std::vector<Site>& sites) const {
         const SensorModel& whole = kind.whole ? *kind.whole : kind.model;
         const auto* camera = std::get_if<Camera>(&whole);
-        if (camera == nullptr || (options.privacy.empty() && options.mount.forbidden.empty()))
+        if (camera == nullptr || (options.unseen.empty() && options.mount.forbidden.empty()))
             return sites;
         std::vector<Site> allowed = sites;
         for (Site& site : allowed)
@@ -234,10 +232,10 @@ struct CandidatePool::Data {
                     pose.tilt == mount.tilt)
                     std::erase(site.headings, pose.heading);
         std::erase_if(allowed, [](const Site& site) { return site.headings.empty(); });
-        for (const PrivacyRule& rule : options.privacy) {
-            const CellSet cells = privateCells(rule, environment, target);
+        for (const UnseenFloor& floor : options.unseen) {
+            const CellSet cells = unseenCells(floor, target);
             if (cells.empty()) continue;
-            const CandidateViews views(sight, target.grid, withDensity(*camera, rule.density),
+            const CandidateViews views(sight, target.grid, withDensity(*camera, floor.density),
                                        mount, &cells);
             allowed = sitesOutOfSight(views, allowed);
         }
@@ -285,7 +283,7 @@ struct CandidatePool::Data {
                     by_beams.emplace(CandidateViews::ByBeams{worlds, *options.beam_step});
                 CandidateViews views(sight, target.grid, kind.model, mount,
                                      demand == nullptr ? &weights.counted : nullptr, by_beams,
-                                     nullptr, facing);
+                                     nullptr, rule);
                 if (demand != nullptr) views.serve(*demand, worlds);
                 if (sights) views.share(*sights);
                 const std::size_t share = (least * level.sites.size() + places - 1) / places;
@@ -399,7 +397,7 @@ struct CandidatePool::Data {
 CandidatePool::CandidatePool(const Environment& environment, RayScenes& worlds,
                              const Target& target, CandidateWeights weights,
                              const ArrangeOptions& options, Progress& progress, CaseRooms rooms,
-                             const FacingCells* facing, const Demand* demand)
+                             const CoverRule* rule, const Demand* demand)
     : data_(new Data{environment,
                      worlds,
                      target,
@@ -407,7 +405,7 @@ CandidatePool::CandidatePool(const Environment& environment, RayScenes& worlds,
                      options,
                      progress,
                      rooms,
-                     facing,
+                     rule,
                      demand,
                      {environment, options.plane, &worlds}}) {}
 

@@ -20,11 +20,10 @@ struct CandidateWeights {
     std::vector<std::uint32_t> left;  ///< weights of the cells not covered yet, else 0
 };
 
-/// Returns the cells of the zones of a rule of privacy. \throws UsageError as privateZones()
-CellSet privateCells(const PrivacyRule& rule, const Environment& environment, const Target& target);
+/// Returns the cells of floor that cameras must not see.
+CellSet unseenCells(const UnseenFloor& floor, const Target& target);
 
 struct CaseRoom;
-class FacingCells;
 /// Rooms in which candidates look, instead of the environment alone; empty: not robust.
 using CaseRooms = std::span<const std::unique_ptr<CaseRoom>>;
 
@@ -34,7 +33,7 @@ class CandidatePool {
     /// Stores references.
     CandidatePool(const Environment& environment, RayScenes& worlds, const Target& target,
                   CandidateWeights weights, const ArrangeOptions& options, Progress& progress,
-                  CaseRooms rooms = {}, const FacingCells* facing = nullptr,
+                  CaseRooms rooms = {}, const CoverRule* rule = nullptr,
                   const Demand* demand = nullptr);
     ~CandidatePool();
     CandidatePool(const CandidatePool&) = delete;

@@ -270,7 +270,7 @@ void CoverageModel::addBeyond(std::size_t number, std::size_t room, const Sensor
         if (!sees(sightIn(number), room, mounted, to)) continue;
         CellParts seen;
         sightIn(number).look(room, {&mounted, 1}, to, gridIn(number, to), seen);
-        rooms_[to].model->withoutFaces(seen);
+        rooms_[to].model->keepFromBeyond(seen);
         for (const CellRun& run : seen.runs)
             for (const Copy& copy : copiesIn(number, to))
                 for (std::size_t cell = run.first; cell < run.end; ++cell)
@@ -288,19 +288,19 @@ class CoverageModel::Joiner {
         for (std::size_t room = 0; camera != nullptr && room < model.rooms_.size(); ++room) {
             if (model.rooms_[room].model == nullptr) continue;
             const RoomModel& own = *model.rooms_[room].model;
-            for (const PrivacyRule& rule : own.options().privacy)
-                private_.push_back({room, withDensity(*camera, rule.density),
-                                    privateCells(rule, own.scene().environment, own.target())});
+            for (const UnseenFloor& floor : own.options().unseen)
+                unseen_.push_back(
+                    {room, withDensity(*camera, floor.density), unseenCells(floor, own.target())});
         }
     }
 
     /// Adds the candidates of a room.
     void add(std::size_t room, const PosedCandidates& own, PosedCandidates& joined) {
         joined.beginRoom(room);
-        // Privacy counts even if views of other rooms do not.
+        // Unseen floor counts even if views of other rooms do not.
         const bool looks =
-            model_.joinsRooms() || (!private_.empty() && model_.site_.sight != nullptr &&
-                                    model_.site_.sight->joinsRooms());
+            model_.joinsRooms() ||
+            (!unseen_.empty() && model_.site_.sight != nullptr && model_.site_.sight->joinsRooms());
         constexpr std::size_t kAtOnce = 256;
         if (looks)
             progress_.begin("looking into other rooms", static_cast<std::int64_t>(own.sites()));
@@ -315,7 +315,7 @@ class CoverageModel::Joiner {
                     // A thread that waits for rows of cells here must not begin with another site.
                     tbb::this_task_arena::isolate([&] {
                         if (model_.joinsRooms()) beyond_[site - first] = look(room, own, site);
-                        is_seeing_[site - first] = seesPrivate(room, own, site);
+                        is_seeing_[site - first] = seesUnseen(room, own, site);
                     });
                 });
                 progress_.advance(static_cast<std::int64_t>(end - first));
@@ -333,19 +333,19 @@ class CoverageModel::Joiner {
     }
 
   private:
-    /// Zones of a room that cameras must not see with so many pixels.
-    struct PrivateZones {
+    /// Floor of a room that cameras must not see with so many pixels.
+    struct UnseenCells {
         std::size_t room = 0;
         Camera camera;
         CellSet cells;
     };
 
-    /// Returns the candidates of a site from which a camera sees private zones of other rooms;
+    /// Returns the candidates of a site from which a camera sees unseen floor of other rooms;
     /// empty if there are none.
-    [[nodiscard]] std::vector<bool> seesPrivate(std::size_t from, const PosedCandidates& own,
-                                                std::size_t site) const {
+    [[nodiscard]] std::vector<bool> seesUnseen(std::size_t from, const PosedCandidates& own,
+                                               std::size_t site) const {
         std::vector<bool> is_seeing;
-        for (const auto& [to, camera, cells] : private_) {
+        for (const auto& [to, camera, cells] : unseen_) {
             std::vector<Sensor> turned;
             for (std::size_t i = own.firstOf(site); i < own.firstOf(site + 1); ++i)
                 turned.push_back({"", camera, own.pose(i)});
@@ -378,7 +378,7 @@ class CoverageModel::Joiner {
                 if (!model_.sees(sight, from, mounted.front(), to)) continue;
                 CellsBeyond seen{to, number, {}};
                 sight.look(from, mounted, to, model_.gridIn(number, to), seen.parts);
-                model_.rooms_[to].model->withoutFaces(seen.parts);
+                model_.rooms_[to].model->keepFromBeyond(seen.parts);
                 if (!seen.parts.runs.empty()) all.push_back(std::move(seen));
             }
         }
@@ -445,7 +445,7 @@ class CoverageModel::Joiner {
     CoverageModel& model_;
     const SensorClass& kind_;
     Progress& progress_;
-    std::vector<PrivateZones> private_;
+    std::vector<UnseenCells> unseen_;
     // Of the current sites:
     std::vector<std::vector<CellsBeyond>> beyond_;
     std::vector<std::vector<bool>> is_seeing_;
@@ -456,16 +456,16 @@ class CoverageModel::Joiner {
 
 std::unique_ptr<PosedCandidates> CoverageModel::candidatesOf(const SensorClass& kind,
                                                              Progress& progress) {
-    const auto no_place = [&](bool is_complete, bool is_private) {
-        return is_complete && is_private
-                   ? "no place for " + nameOf(kind) + ": all see zones of --privacy"
+    const auto no_place = [&](bool is_complete, const std::vector<UnseenFloor>& unseen) {
+        return is_complete && !unseen.empty()
+                   ? "no place for " + nameOf(kind) + ": all see zones of " +
+                         std::string(unseen.front().option)
                    : "stopped before there was any candidate for " + nameOf(kind);
     };
     if (hasCellsOfRoom()) {
         CandidatePool::Made made = only().pool().make(kind);
         is_complete_ = is_complete_ && made.is_complete;
-        if (made.set->size() == 0)
-            throw UnmetError(no_place(made.is_complete, !options_.privacy.empty()));
+        if (made.set->size() == 0) throw UnmetError(no_place(made.is_complete, options_.unseen));
         return std::move(made.set);
     }
     auto joined = std::make_unique<PosedCandidates>(problem_.cells());
@@ -482,7 +482,7 @@ std::unique_ptr<PosedCandidates> CoverageModel::candidatesOf(const SensorClass& 
                 is_complete_ = is_complete_ && made.is_complete;
                 set = std::move(made.set);
                 if (set->size() == 0 && reason.empty())
-                    reason = no_place(made.is_complete, !model.options().privacy.empty());
+                    reason = no_place(made.is_complete, model.options().unseen);
             } catch (const UnmetError& error) {  // another room may have a place
                 set = std::make_unique<PosedCandidates>(model.weights().size());
                 if (reason.empty()) reason = site_.rooms[room].id + ": " + error.what();

@@ -35,7 +35,7 @@ struct Objective {
                    Arrangement&) = nullptr;
 };
 
-/// Returns the rows: coverage, weights, density, redundancy, facing, demand, robust, path,
+/// Returns the rows: coverage, weights, density, redundancy, rule, demand, robust, path,
 /// localise, cost.
 std::span<const Objective> objectives();
 

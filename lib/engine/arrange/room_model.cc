@@ -13,8 +13,8 @@ ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options) {
     options.mount.keep_out = goals.keep_out;
     options.mount.keep_in = goals.keep_in;
     options.mount.forbidden = goals.forbidden;
-    options.privacy = goals.privacy;
-    options.facing = goals.facing;
+    options.unseen = goals.unseen;
+    options.cover_rule = goals.cover_rule;
     options.list = goals.places;
     options.demand = goals.demand;
     options.robust.seed = goals.case_seed;
@@ -27,8 +27,8 @@ RoomGoals goalsOf(const ArrangeOptions& options) {
     goals.keep_out = options.mount.keep_out;
     goals.keep_in = options.mount.keep_in;
     goals.forbidden = options.mount.forbidden;
-    goals.privacy = options.privacy;
-    goals.facing = options.facing;
+    goals.unseen = options.unseen;
+    goals.cover_rule = options.cover_rule;
     goals.places = options.list;
     goals.demand = options.demand;
     goals.case_seed = options.robust.seed;
@@ -57,7 +57,7 @@ RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
     counted_ = CellSet(weights_.size());
     for (std::size_t i = 0; i < weights_.size(); ++i)
         if (weights_[i] > 0) counted_.set(i);
-    if (!options_.facing.empty()) facing_.emplace(scene_->environment, target_, options_.facing);
+    if (options_.cover_rule) rule_ = options_.cover_rule(scene_->environment, target_);
     achieved_.assign(target_.grid.size(), 0);
     countStanding(standing.sensors, 0, achieved_);
     standing_ = CellSet(target_.grid.size());
@@ -84,8 +84,8 @@ void RoomModel::countStanding(const std::vector<SensorView>& views, std::size_t 
     for (const SensorView& view : views) {
         const int part = view.isPartial() ? 1 : unit_;
         CellSet cells = view.cells;
-        if (facing_)
-            facing_->keepFaces(scene_->sensors[view.index].model, view.pose.position.onFloor(),
+        if (rule_)
+            rule_->keepCovered(scene_->sensors[view.index].model, view.pose.position.onFloor(),
                                cells);
         cells.forEach([&](std::size_t cell) {
             achieved[first + cell] =
@@ -126,12 +126,12 @@ CellSet RoomModel::cellsOf(const Sensor& sensor, std::size_t all) const {
     for (const auto& room : cases_)
         room->sight.cellsOf(room->target.grid, room->mounted(sensor))
             .forEach([&](std::size_t cell) { cells.set(room->first + cell); });
-    if (facing_) facing_->keepFaces(sensor.model, sensor.pose.position.onFloor(), cells);
+    if (rule_) rule_->keepCovered(sensor.model, sensor.pose.position.onFloor(), cells);
     return cells;
 }
 
-void RoomModel::withoutFaces(CellParts& parts) const {
-    if (facing_) facing_->removeAll(parts);
+void RoomModel::keepFromBeyond(CellParts& parts) const {
+    if (rule_) rule_->removeAll(parts);
 }
 
 void RoomModel::makePool(std::vector<std::uint32_t> left, Progress& progress) {
@@ -140,8 +140,8 @@ void RoomModel::makePool(std::vector<std::uint32_t> left, Progress& progress) {
         if (left[i] == 0) counted.reset(i);
     pool_ = std::make_unique<CandidatePool>(scene_->environment, worlds_, target_,
                                             CandidateWeights{std::move(counted), std::move(left)},
-                                            options_, progress, cases_,
-                                            facing_ ? &*facing_ : nullptr, options_.demand.get());
+                                            options_, progress, cases_, rule_.get(),
+                                            options_.demand.get());
 }
 
 }  // namespace ispace

@@ -12,9 +12,9 @@
 #include "arrange/arrange.h"
 #include "arrange/candidate_generator.h"
 #include "arrange/case_room.h"
-#include "arrange/facing_cells.h"
 #include "arrange/sensor_group.h"
 #include "arrange/site.h"
+#include "arrange/view_rules.h"
 #include "base/cell_set.h"
 #include "base/error.h"
 #include "coverage/coverage.h"
@@ -36,7 +36,7 @@ RoomGoals goalsOf(const ArrangeOptions& options);
 class RoomModel {
   public:
     /// Stores the references. \param unit multiplicity of sensors other than receivers
-    /// \throws UsageError as FacingCells and Demand::mustServe()
+    /// \throws UsageError as ArrangeOptions::cover_rule and Demand::mustServe()
     RoomModel(const SiteRoom& room, const ArrangeOptions& options,
               std::span<const SensorClass> kinds, int unit);
 
@@ -70,8 +70,8 @@ class RoomModel {
     void prepare(const Sensor& sensor);
     /// Computes the cells that a sensor of the room sees. \param all number of cells of all cases
     [[nodiscard]] CellSet cellsOf(const Sensor& sensor, std::size_t all) const;
-    /// Removes the cells of rules of faces, as for a sensor outside of the room.
-    void withoutFaces(CellParts& parts) const;
+    /// Removes the cells that sensors of other rooms do not cover, see CoverRule.
+    void keepFromBeyond(CellParts& parts) const;
 
     /// Builds the pool of candidates. \param left weights of the cells that are not covered yet
     void makePool(std::vector<std::uint32_t> left, Progress& progress);
@@ -91,7 +91,7 @@ class RoomModel {
     CellSet counted_;
     std::vector<std::uint16_t> achieved_;
     CellSet standing_;
-    std::optional<FacingCells> facing_;
+    std::unique_ptr<const CoverRule> rule_;
     std::vector<std::unique_ptr<CaseRoom>> cases_;
     std::unique_ptr<CandidatePool> pool_;
 };

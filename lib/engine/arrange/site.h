@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "arrange/placement_rules.h"
+#include "arrange/view_rules.h"
 #include "base/cell_set.h"
-#include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
 #include "coverage/crowd.h"
 #include "coverage/target.h"
@@ -34,11 +34,8 @@ struct RoomGoals {
     bool counts = true;  ///< false: none of its floor counts, as that of other rooms is asked
     bool takes_sensors = true;  ///< false: sensors that may stand anywhere are kept to other rooms
     std::vector<NamedZone> keep_out = {}, keep_in = {};
-    /// Cameras must not see these zones. Candidates that see a cell of one are left out; layouts
-    /// that see more than kMinPiece are searched again without the cameras that do.
-    std::vector<PrivacyRule> privacy = {};
-    /// In these zones floor counts only where a camera sees faces. Headings are known.
-    std::vector<FacingRule> facing = {};
+    std::vector<UnseenFloor> unseen = {};
+    MakeCoverRule cover_rule = {};      ///< empty: each sensor covers the cells that it sees
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
     std::vector<Site> places = {};      ///< of Strategy::List
     /// Of RobustChoice, for a room of several.

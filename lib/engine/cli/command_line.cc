@@ -469,7 +469,10 @@ void CommandLine::operands(std::vector<std::string>& variable, std::size_t most)
 
 void CommandLine::manyOperandsWith(const bool& flag) { data_->many = &flag; }
 
-bool CommandLine::given(const std::string& name) const { return data_->app.count(name) > 0; }
+bool CommandLine::given(const std::string& name) const {
+    const CLI::Option* const option = data_->app.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+}
 
 std::vector<std::string> CommandLine::valuesOf(const std::string& name) const {
     return given(name) ? data_->app.get_option(name)->results() : std::vector<std::string>{};

@@ -115,9 +115,10 @@ class CommandLine {
     /// \throws UsageError with a hint, TextRequested for -h and -V
     void parse(int argc, const char* const* argv);
 
-    /// Returns true if the option ("--output") stood in the command line. \pre it is declared
+    /// Returns true if the option ("--output") stood in the command line; false if it is not
+    /// declared, as one of an extension that the build lacks.
     [[nodiscard]] bool given(const std::string& name) const;
-    /// Returns the values of an option as they were given; empty without it. \pre it is declared
+    /// Returns the values of an option as they were given; empty without it.
     [[nodiscard]] std::vector<std::string> valuesOf(const std::string& name) const;
     /// Returns a name of each declared option, in their order: the first long one ("--output"),
     /// else the short one.

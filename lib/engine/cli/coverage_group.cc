@@ -38,6 +38,16 @@ bool CoverageExtensions::isAsked() const {
                        [](const Member& member) { return member.group->isAsked(); });
 }
 
+bool CoverageExtensions::wantsWholeDensities() const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [](const Member& member) { return member.group->wantsWholeDensities(); });
+}
+
+bool CoverageExtensions::judgesAlone() const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [](const Member& member) { return member.group->judgesAlone(); });
+}
+
 std::string CoverageExtensions::requirements() const {
     std::string text;
     for (const Member& member : members_) text += member.group->requirements();

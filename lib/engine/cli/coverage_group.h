@@ -27,10 +27,10 @@ struct MeasuredSite {
     const SceneRules& rules;
 };
 
-/// What became of a `--require` that a group judges.
+/// What became of a `--require` or of an option of a group that requires something.
 struct JudgedShare {
     std::string requirement;  ///< as given
-    std::string phrase;       ///< for a page
+    std::string phrase;       ///< for a page; "": a section of it says so
     Verdict verdict;
 };
 
@@ -55,6 +55,11 @@ class CoverageGroup {
     /// (CommandLine::valuesOf). Opens no file. \throws UsageError
     virtual void take(const CommandLine& line) = 0;
     [[nodiscard]] virtual bool isAsked() const = 0;
+    /// Returns true if it wants all densities of cameras (CoverageOptions::whole_densities). It is
+    /// called before take().
+    [[nodiscard]] virtual bool wantsWholeDensities() const { return false; }
+    /// Returns true if it requires something without `--require`. It is called before take().
+    [[nodiscard]] virtual bool judgesAlone() const { return false; }
     /// Returns the requirements that it judges, for the help of `--require`: "; of the ways of
     /// --presence presence:95%"; "" for none.
     [[nodiscard]] virtual std::string_view requirements() const { return ""; }
@@ -88,6 +93,8 @@ class CoverageExtensions {
     /// As those of CoverageGroup, for all of them.
     void take(const CommandLine& line) const;
     [[nodiscard]] bool isAsked() const;
+    [[nodiscard]] bool wantsWholeDensities() const;
+    [[nodiscard]] bool judgesAlone() const;
     /// Returns what each group says, one after another.
     [[nodiscard]] std::string requirements() const;
     /// \throws UsageError for a requirement that this build lacks, with its extension

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/arrange_group.h"
 #include "cli/coverage_group.h"
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
@@ -41,6 +42,7 @@ struct Extension {
     void (*add)() = nullptr;
     std::vector<ToolOptions> options = {};                     ///< at most one for each tool
     std::unique_ptr<ObjectiveGroup> (*objective)() = nullptr;  ///< of `arrange --objective`
+    std::unique_ptr<ArrangeGroup> (*arrange)() = nullptr;      ///< rules of layouts of `arrange`
     std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;    ///< of reports of `coverage`
     std::unique_ptr<RecordGroup> (*record)() = nullptr;        ///< of records of `simrun`
     std::unique_ptr<ProofGroup> (*proof)() = nullptr;          ///< of `arrange --proof`
@@ -69,6 +71,7 @@ class Extensions {
     [[nodiscard]] const std::vector<std::string_view>& names() const { return names_; }
     [[nodiscard]] const std::vector<ToolExtension>& options() const { return options_; }
     [[nodiscard]] const std::vector<ObjectiveRow>& objectives() const { return objectives_; }
+    [[nodiscard]] const std::vector<ArrangeRow>& arrange() const { return arrange_; }
     [[nodiscard]] const std::vector<CoverageRow>& coverage() const { return coverage_; }
     [[nodiscard]] const std::vector<RecordRow>& records() const { return records_; }
     [[nodiscard]] const std::vector<ProofRow>& proofs() const { return proofs_; }
@@ -80,6 +83,7 @@ class Extensions {
     std::vector<std::string_view> names_;
     std::vector<ToolExtension> options_;
     std::vector<ObjectiveRow> objectives_;
+    std::vector<ArrangeRow> arrange_;
     std::vector<CoverageRow> coverage_;
     std::vector<RecordRow> records_;
     std::vector<ProofRow> proofs_;

@@ -11,7 +11,6 @@
 
 #include "arrange/arrange.h"
 #include "base/error.h"
-#include "coverage/camera_rules.h"
 #include "env/zone.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
@@ -338,72 +337,6 @@ TEST(BuildingSite, SensorsAreKeptToRoomsOfTheirZones) {
     const ArrangedBuilding result = arrangedIn(building, {lasers(2)}, coarse(), goals);
     EXPECT_EQ(result.counts, (std::vector<int>{2, 0}));
     for (const Placement& sensor : result.found.sensors) EXPECT_LE(sensor.pose.position.x, 1.5);
-}
-
-TEST(BuildingSite, PrivacyHoldsInItsStorey) {
-    const SiteScene building = makeSiteScene(
-        readBuilding("- storey: {id: ground, height: 2.8, records: [{ispace: {size: 5 x 4}}, "
-                     "{zone: {id: desk, at: [1, 1], size: 1 x 1}}]}\n"
-                     "- storey: {id: upper, z: 3, height: 2.8, records: [{ispace: {size: 5 x "
-                     "4}}]}\n",
-                     "house.yaml", {}),
-        {}, {});
-    Record camera(*sceneSchemas().find("camera"));
-    camera.set("fov", Tuple{90});
-    ArrangeOptions options;
-    options.density = {1, 1, 4};
-    options.cells = CellSize{0.25};
-    const ArrangedBuilding open = arrangedIn(building, {{camera, 4}}, options);
-    std::vector<RoomGoals> goals(2);
-    goals[0].privacy = {parsePrivacy("desk")};
-    options.privacy = goals[0].privacy;
-    const ArrangedBuilding secret = arrangedIn(building, {{camera, 4}}, options, goals);
-    ASSERT_EQ(secret.found.privacy.size(), 1U);
-    EXPECT_EQ(secret.found.privacy[0].zone, "ground/desk");
-    EXPECT_TRUE(isMet(secret.found.privacy[0]));
-    EXPECT_FALSE(
-        isMet(measurePrivacy(withPlaced(*building.scenes[0], open.groups, open.found.sensors, 0), 0,
-                             goals[0].privacy)[0]));
-    EXPECT_LE(secret.found.candidate_value, open.found.candidate_value + 1e-12);
-}
-
-/// Two storeys around an atrium, with a zone below it.
-SiteScene atrium(const std::string& layout = "") {
-    StoreyedDocument document = readBuilding(
-        "- storey: {id: ground, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, 6], [0, "
-        "6]], closed: yes, height: 2.8}}, {zone: {id: desk, at: [4, 3], size: 2 x 1}}]}\n"
-        "- storey: {id: gallery, z: 3, height: 2.8, records: [{fence: {path: [[0, 0], [8, 0], [8, "
-        "6], [0, 6]], closed: yes, height: 2.8}}]}\n"
-        "- shaft: {storeys: 'ground,gallery', path: [[2, 1.5], [6, 1.5], [6, 4.5], [2, 4.5]]}\n",
-        "house.yaml", {});
-    std::vector<Document> layouts;
-    if (!layout.empty())
-        layouts = layoutsOf(readRecordText("#3dm 1\n" + layout, "l.3dm", sceneSchemas()), document);
-    return makeSiteScene(std::move(document), layouts, {});
-}
-
-TEST(BuildingSite, PrivacyHoldsAgainstCamerasAbove) {
-    Record camera(*sceneSchemas().find("camera"));
-    camera.set("fov", Tuple{90});
-    camera.set("tilt", -50.0);
-    camera.set("range", Tuple{8});
-    ArrangeOptions options;
-    options.density = {1, 1, 8};
-    options.cells = CellSize{0.25};
-    std::vector<RoomGoals> goals(2);
-    goals[0].privacy = {parsePrivacy("desk")};
-    goals[0].takes_sensors = false;
-    options.privacy = goals[0].privacy;
-    const ArrangedBuilding result = arrangedIn(atrium(), {{camera, 1}}, options, goals);
-    ASSERT_EQ(result.found.privacy.size(), 1U);
-    EXPECT_TRUE(isMet(result.found.privacy[0]));
-    EXPECT_GT(result.found.coverage, 0);
-    // A standing camera over the zone is named.
-    const std::string above = "camera id=gallery/c fov=90 at=4,3,2.5 tilt=-90 range=8\n";
-    const ArrangedBuilding seen = arrangedIn(atrium(above), {{camera, 1}}, options, goals);
-    ASSERT_EQ(seen.found.privacy.size(), 1U);
-    EXPECT_FALSE(isMet(seen.found.privacy[0]));
-    EXPECT_EQ(seen.found.privacy[0].cameras, std::vector<std::string>{"gallery/c"});
 }
 
 TEST(BuildingSite, StandingSensorsOfOpenStoreysCount) {

@@ -8,9 +8,9 @@
 
 #include "base/error.h"
 #include "cli/progress_bar.h"
-#include "coverage/camera_rules.h"
 #include "extensions/advice/site_suggestions.h"
 #include "extensions/advice/suggestion_report.h"
+#include "extensions/camerarules/camera_rules.h"
 
 namespace ispace::advice {
 
@@ -56,12 +56,12 @@ class AdviceGroup final : public CoverageGroup {
                               .measure = site.how,
                               .requirements = {site.requirements.begin(), site.requirements.end()}};
         for (const std::string& text : facing_) {
-            FacingRule rule = parseFacing(text);
+            camerarules::FacingRule rule = camerarules::parseFacing(text);
             rule.zone = inOwnStorey(site.input, rule.zone);
             if (rule.required) wanted.facing.push_back(std::move(rule));
         }
         for (const std::string& text : privacy_) {
-            PrivacyRule rule = parsePrivacy(text);
+            camerarules::PrivacyRule rule = camerarules::parsePrivacy(text);
             rule.zones = inOwnStorey(site.input, rule.zones);
             wanted.privacy.push_back(std::move(rule));
         }

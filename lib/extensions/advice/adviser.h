@@ -16,12 +16,12 @@
 
 #include "arrange/arrange.h"
 #include "coverage/exact_shares.h"
-#include "coverage/facing_meter.h"
-#include "coverage/private_floor.h"
 #include "coverage/requirement.h"
 #include "coverage/visible_area.h"
 #include "extensions/advice/coarse_sight.h"
 #include "extensions/advice/suggestion.h"
+#include "extensions/camerarules/facing_meter.h"
+#include "extensions/camerarules/private_floor.h"
 #include "scene/placement_schemas.h"
 #include "trace/ray_world.h"
 
@@ -58,7 +58,7 @@ class RuleTrials {
   public:
     /// Stores the references. \param private_floor of the scene's environment
     RuleTrials(const MeasuredState& now, const SuggestOptions& options,
-               PrivateFloor& private_floor);
+               camerarules::PrivateFloor& private_floor);
 
     /// Returns a bound of gain() that holds for all poses of the sensor.
     [[nodiscard]] double mostGain(const Sensor& sensor) const;
@@ -69,18 +69,19 @@ class RuleTrials {
   private:
     const SuggestOptions& options_;
     const Scene& scene_;
-    PrivateFloor& private_floor_;
+    camerarules::PrivateFloor& private_floor_;
     std::vector<SensorView> views_;  // of all cameras
-    std::optional<FacingMeter> facing_;
+    std::optional<camerarules::FacingMeter> facing_;
     double faces_ = 0;  // that are missing, m2
 };
 
 /// Returns the same as missingFloor(). \param private_floor of the scene's environment
 double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options,
-                    PrivateFloor& private_floor);
+                    camerarules::PrivateFloor& private_floor);
 
 /// Returns the rules of facing that a scene does not meet.
-std::vector<FacingRule> unmetFacing(const MeasuredState& now, const SuggestOptions& options);
+std::vector<camerarules::FacingRule> unmetFacing(const MeasuredState& now,
+                                                 const SuggestOptions& options);
 
 /// Searches changes of measured scenes, see suggestChanges().
 class Adviser {
@@ -103,7 +104,7 @@ class Adviser {
     }
 
     /// Returns the private floor of an environment; valid until that of two others is requested.
-    PrivateFloor& privateFloorOf(const Environment& environment);
+    camerarules::PrivateFloor& privateFloorOf(const Environment& environment);
     std::optional<Suggestion> furniture(const MeasuredState& now);
     std::optional<Suggestion> replacement(const MeasuredState& now);
     std::optional<Suggestion> removal(const MeasuredState& now);
@@ -223,7 +224,7 @@ class Adviser {
     std::unique_ptr<FirstSight> first_sight_;
     std::unique_ptr<CoarseSight> first_coarse_;  // of its environment
     /// Of the first environment, and of the last other one.
-    std::array<std::unique_ptr<PrivateFloor>, 2> private_floors_;
+    std::array<std::unique_ptr<camerarules::PrivateFloor>, 2> private_floors_;
 };
 
 /// Returns the sensors whose pose a person can change: not those of robots and people.

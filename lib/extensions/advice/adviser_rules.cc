@@ -8,57 +8,59 @@
 #include <variant>
 #include <vector>
 
-#include "coverage/camera_rules.h"
-#include "coverage/private_floor.h"
 #include "env/zone.h"
 #include "extensions/advice/adviser.h"
+#include "extensions/camerarules/camera_rules.h"
+#include "extensions/camerarules/facing_cells.h"
+#include "extensions/camerarules/private_floor.h"
 
 namespace ispace::advice {
 
 namespace {
 
 /// Returns the floor of a zone in which faces are missing, m2. An unknown share counts as none.
-double missingFaces(const FacingResult& result) {
+double missingFaces(const camerarules::FacingResult& result) {
     if (isMet(result)) return 0;
     return (*result.rule.required - result.share.value_or(0)) * result.area;
 }
 
-double missingFaces(const std::vector<FacingResult>& results) {
+double missingFaces(const std::vector<camerarules::FacingResult>& results) {
     double sum = 0;
-    for (const FacingResult& result : results) sum += missingFaces(result);
+    for (const camerarules::FacingResult& result : results) sum += missingFaces(result);
     return sum;
 }
 
 }  // namespace
 
 double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options,
-                    PrivateFloor& private_floor) {
-    double sum = missingFaces(measureFacing(scene, coverage, options.facing));
+                    camerarules::PrivateFloor& private_floor) {
+    double sum = missingFaces(camerarules::measureFacing(scene, coverage, options.facing));
     for (const Requirement& requirement : options.requirements)
         sum += checkRequirement(requirement, coverage).missing;
     if (options.privacy.empty()) return sum;
     // Camera by camera: each that is mended counts, even if another one sees the same floor.
-    PrivateFloor::Sight seen;
+    camerarules::PrivateFloor::Sight seen;
     for (const Sensor& sensor : scene.sensors) {
-        const PrivateFloor::Sight& sight = private_floor.knownSight(sensor);
+        const camerarules::PrivateFloor::Sight& sight = private_floor.knownSight(sensor);
         seen.broken += sight.broken;
         seen.all += sight.all;
     }
     if (seen.broken > 0 || seen.all <= kMinPiece) return sum + seen.broken;
     // Small pieces of several cameras.
-    for (const PrivacyResult& result :
-         measurePrivacy(scene, options.measure.plane, options.privacy))
+    for (const camerarules::PrivacyResult& result :
+         camerarules::measurePrivacy(scene, options.measure.plane, options.privacy))
         if (!isMet(result)) sum += result.seen.value_or(result.area);
     return sum;
 }
 
 double missingFloor(const Scene& scene, const Coverage& coverage, const SuggestOptions& options) {
-    PrivateFloor private_floor(scene.environment, options.measure.plane, options.privacy);
+    camerarules::PrivateFloor private_floor(scene.environment, options.measure.plane,
+                                            options.privacy);
     return missingFloor(scene, coverage, options, private_floor);
 }
 
 RuleTrials::RuleTrials(const MeasuredState& now, const SuggestOptions& options,
-                       PrivateFloor& private_floor)
+                       camerarules::PrivateFloor& private_floor)
     : options_(options), scene_(now.scene), private_floor_(private_floor) {
     if (options.facing.empty()) return;
     views_ = now.coverage.sensors;
@@ -92,9 +94,11 @@ double RuleTrials::gain(const Sensor& sensor, const Pose3& pose) {
     return withoutNoise(gain);
 }
 
-std::vector<FacingRule> unmetFacing(const MeasuredState& now, const SuggestOptions& options) {
-    std::vector<FacingRule> unmet;
-    for (const FacingResult& result : measureFacing(now.scene, now.coverage, options.facing))
+std::vector<camerarules::FacingRule> unmetFacing(const MeasuredState& now,
+                                                 const SuggestOptions& options) {
+    std::vector<camerarules::FacingRule> unmet;
+    for (const camerarules::FacingResult& result :
+         camerarules::measureFacing(now.scene, now.coverage, options.facing))
         if (!isMet(result)) unmet.push_back(result.rule);
     return unmet;
 }
@@ -102,11 +106,11 @@ std::vector<FacingRule> unmetFacing(const MeasuredState& now, const SuggestOptio
 std::vector<ArrangeOptions> Adviser::goalsOf(const MeasuredState& now,
                                              ArrangeOptions options) const {
     std::vector<ArrangeOptions> goals;
-    for (const FacingRule& rule : unmetFacing(now, options_)) {
+    for (const camerarules::FacingRule& rule : unmetFacing(now, options_)) {
         ArrangeOptions& goal = goals.emplace_back(options);
-        goal.facing = {rule};
+        goal.cover_rule = camerarules::coverRuleOf({rule});
         goal.weights = {};
-        for (const FacingPart& part : rule.parts)
+        for (const camerarules::FacingPart& part : rule.parts)
             goal.weights.targets.push_back(namedZone(rule.zone, part.outline));
     }
     const bool is_for_floor =
@@ -118,12 +122,13 @@ std::vector<ArrangeOptions> Adviser::goalsOf(const MeasuredState& now,
     return goals;
 }
 
-PrivateFloor& Adviser::privateFloorOf(const Environment& environment) {
+camerarules::PrivateFloor& Adviser::privateFloorOf(const Environment& environment) {
     for (const auto& known : private_floors_)
         if (known && known->environment().digest() == environment.digest()) return *known;
     // The first environment returns, the others are tried once.
-    std::unique_ptr<PrivateFloor>& made = private_floors_[private_floors_[0] ? 1 : 0];
-    made = std::make_unique<PrivateFloor>(environment, options_.measure.plane, options_.privacy);
+    std::unique_ptr<camerarules::PrivateFloor>& made = private_floors_[private_floors_[0] ? 1 : 0];
+    made = std::make_unique<camerarules::PrivateFloor>(environment, options_.measure.plane,
+                                                       options_.privacy);
     return *made;
 }
 
@@ -135,7 +140,7 @@ const VisibleArea* Adviser::sightIn(const Environment& environment) {
 }
 
 std::size_t Adviser::intruders(const Scene& scene) {
-    PrivateFloor& floor = privateFloorOf(scene.environment);
+    camerarules::PrivateFloor& floor = privateFloorOf(scene.environment);
     return static_cast<std::size_t>(
         std::count_if(scene.sensors.begin(), scene.sensors.end(),
                       [&](const Sensor& sensor) { return floor.knownSight(sensor).broken > 0; }));
@@ -152,7 +157,7 @@ std::optional<Suggestion> Adviser::withoutIntruder(const MeasuredState& now) {
         double most;  // that its removal can mend
     };
     std::vector<Intruder> all;
-    PrivateFloor& floor = privateFloorOf(now.scene.environment);
+    camerarules::PrivateFloor& floor = privateFloorOf(now.scene.environment);
     for (const Sensor& sensor : standingSensors(now.scene))
         if (const double seen = floor.knownSight(sensor).broken; seen > 0)
             all.push_back({sensor.id, withoutNoise(seen)});

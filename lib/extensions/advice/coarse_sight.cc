@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "arrange/candidate_generator.h"
-#include "coverage/camera_rules.h"
+#include "extensions/camerarules/layout_privacy.h"
 #include "scene/sensor/ultrasound.h"
 
 namespace ispace::advice {
@@ -41,8 +41,10 @@ CoarseSight::CoarseSight(const Environment& environment, const SuggestOptions& o
                          options.measure.height)),
       cell_(target_.grid.cellArea()),
       error_(errorOf(cell_)) {
-    for (const PrivacyRule& rule : options.privacy)
-        private_.push_back({rule.density, someOf(privateCells(rule, environment, target_))});
+    for (const camerarules::PrivacyRule& rule : options.privacy)
+        private_.push_back(
+            {rule.density,
+             someOf(unseenCells(camerarules::unseenFloor(rule, environment), target_))});
 }
 
 CoarseSight::Some CoarseSight::someOf(CellSet cells) const {

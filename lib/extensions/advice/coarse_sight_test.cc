@@ -63,7 +63,7 @@ TEST(CoarseSight, ViewsCoverHardlyMoreThanTheirCells) {
 TEST(CoarseSight, CountsPrivateFloorAgainstACamera) {
     const Scene scene = roomWith("camera id=c at=-4,-3,2.5 fov=80 tilt=-35 heading=45\n");
     SuggestOptions options;
-    options.privacy = {parsePrivacy("corner,1")};
+    options.privacy = {camerarules::parsePrivacy("corner,1")};
     CoarseSight coarse(scene.environment, options, CoarseSight::Cells::Many);
     const Sensor& camera = scene.sensors.front();
     coarse.look(scene.sensors);
@@ -83,7 +83,7 @@ TEST(CoarseSight, EstimatesOfKnownPlacesAreThoseOfNewOnes) {
         "camera id=c at=-4,-3,2.5 fov=80 tilt=-35 heading=45\n"
         "camera id=o at=4.5,3.5,2.6 fov=90 tilt=-30 heading=-140\n");
     SuggestOptions options;
-    options.privacy = {parsePrivacy("corner,1")};
+    options.privacy = {camerarules::parsePrivacy("corner,1")};
     CoarseSight known(scene.environment, options, CoarseSight::Cells::Many);
     for (const std::size_t others : {std::size_t{2}, std::size_t{1}}) {
         CoarseSight fresh(scene.environment, options, CoarseSight::Cells::Many);
@@ -100,7 +100,7 @@ TEST(CoarseSight, EstimatesOfKnownPlacesAreThoseOfNewOnes) {
 TEST(CoarseSight, EstimatesNoRequirements) {
     EXPECT_TRUE(CoarseSight::estimates({}));
     SuggestOptions options;
-    options.facing = {parseFacing("corner,45deg,0=50%")};
+    options.facing = {camerarules::parseFacing("corner,45deg,0=50%")};
     EXPECT_FALSE(CoarseSight::estimates(options));
 }
 

@@ -121,8 +121,8 @@ std::vector<Suggestion> suggestForSite(const SiteScene& building, const SiteCove
     const auto whole = wholeScenes(building);
     const auto missing_of = [&](const SiteScene& of, const SiteCoverage& by) {
         if (options.facing.empty() && options.privacy.empty()) return 0.0;
-        return missingFloor(
-            measureSiteRules(of, by, options.measure, options.facing, options.privacy));
+        return missingFloor(camerarules::measureSiteRules(of, by, options.measure, options.facing,
+                                                          options.privacy));
     };
     const auto uncovered_of = [&](const SiteCoverage& by) {
         double sum = 0;
@@ -142,7 +142,8 @@ std::vector<Suggestion> suggestForSite(const SiteScene& building, const SiteCove
         if (whole[i] == nullptr) continue;
         const double floor = coverage.storeys[i].report.indoor_area;
         StopsWith stops(progress);
-        StoreyRules rules = rulesOfStorey(building, coverage, i, options.facing, options.privacy);
+        camerarules::StoreyRules rules =
+            camerarules::rulesOfStorey(building, coverage, i, options.facing, options.privacy);
         SuggestOptions own = options;
         own.facing = std::move(rules.facing);
         own.privacy = std::move(rules.privacy);
@@ -209,8 +210,8 @@ Advice adviceFor(const SiteScene& building, const SiteCoverage& coverage,
         equipped.devices = devices;
         advice.suggestions = suggestForSite(equipped, coverage, options, progress);
         if (!options.facing.empty() || !options.privacy.empty())
-            missing = missingFloor(measureSiteRules(building, coverage, options.measure,
-                                                    options.facing, options.privacy));
+            missing = missingFloor(camerarules::measureSiteRules(
+                building, coverage, options.measure, options.facing, options.privacy));
     }
     advice.is_short =
         missing > 0 && (advice.suggestions.empty() ||

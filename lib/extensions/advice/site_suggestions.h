@@ -8,8 +8,8 @@
 
 #include "extensions/advice/suggestion.h"
 #include "extensions/advice/suggestion_report.h"
+#include "extensions/camerarules/site_rules.h"
 #include "site/site_coverage.h"
-#include "site/site_rules.h"
 #include "site/site_scene.h"
 
 namespace ispace::advice {

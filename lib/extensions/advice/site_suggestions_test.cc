@@ -75,11 +75,11 @@ SiteScene privateHouse() {
 TEST(BuildingSuggestions, MeetRulesOfPrivacyOnAllStoreys) {
     const SiteScene building = privateHouse();
     SuggestOptions options;
-    options.privacy = {parsePrivacy("*/desk")};
+    options.privacy = {camerarules::parsePrivacy("*/desk")};
     const SiteCoverage coverage = measureSite(building, options.measure);
     const auto missing = [&](const SiteScene& of) {
-        return missingFloor(measureSiteRules(of, measureSite(of, options.measure), options.measure,
-                                             {}, options.privacy));
+        return missingFloor(camerarules::measureSiteRules(of, measureSite(of, options.measure),
+                                                          options.measure, {}, options.privacy));
     };
     ASSERT_GT(missing(building), 4);
     SilentProgress silent;
@@ -105,7 +105,7 @@ TEST(BuildingSuggestions, MeetRulesOfPrivacyOnAllStoreys) {
 TEST(BuildingSuggestions, TellTheFloorThatRequirementsStillMiss) {
     const SiteScene building = privateHouse();
     SuggestOptions options;
-    options.privacy = {parsePrivacy("*/desk")};
+    options.privacy = {camerarules::parsePrivacy("*/desk")};
     options.requirements = {parseRequirement("free:99%")};
     const SiteCoverage coverage = measureSite(building, options.measure);
     SilentProgress silent;
@@ -123,10 +123,12 @@ TEST(BuildingSuggestions, TellTheFloorThatRequirementsStillMiss) {
 TEST(BuildingSuggestions, RegardRulesOfOneStorey) {
     const SiteScene building = privateHouse();
     SuggestOptions options;
-    options.facing = {parseFacing("u/desk,45deg,0=90%")};
+    options.facing = {camerarules::parseFacing("u/desk,45deg,0=90%")};
     const SiteCoverage coverage = measureSite(building, options.measure);
-    const StoreyRules lower = rulesOfStorey(building, coverage, 0, options.facing, {});
-    const StoreyRules upper = rulesOfStorey(building, coverage, 1, options.facing, {});
+    const camerarules::StoreyRules lower =
+        camerarules::rulesOfStorey(building, coverage, 0, options.facing, {});
+    const camerarules::StoreyRules upper =
+        camerarules::rulesOfStorey(building, coverage, 1, options.facing, {});
     EXPECT_TRUE(lower.facing.empty());
     ASSERT_EQ(upper.facing.size(), 1U);
     EXPECT_EQ(upper.facing[0].zone, "u/desk");

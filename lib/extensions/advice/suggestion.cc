@@ -18,6 +18,7 @@
 #include "env/level.h"
 #include "extensions/advice/adviser.h"
 #include "extensions/advice/coarse_sight.h"
+#include "extensions/camerarules/layout_privacy.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "sense/scan.h"
@@ -283,7 +284,9 @@ ArrangeOptions Adviser::optionsFor(const MeasuredState& now, const Scene& home,
     options.weights = weightsFor(now);
     options.plane = options_.measure.plane;
     options.pixel_density = options_.measure.density;
-    options.privacy = options_.privacy;
+    RoomGoals goals;  // which a room alone takes from the options
+    const Environment* const room = &now.scene.environment;
+    camerarules::askPrivacy({options_.privacy}, {&room, 1}, options, {&goals, 1});
     options.seed = 0;
     options.is_for_gain_alone = true;
     const Box2& limits = home.environment.limits();

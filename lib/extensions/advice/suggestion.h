@@ -10,9 +10,9 @@
 
 #include "base/error.h"
 #include "base/stops_with.h"
-#include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
 #include "coverage/requirement.h"
+#include "extensions/camerarules/camera_rules.h"
 #include "record/edit.h"
 #include "scene/devices.h"
 #include "scene/scene.h"
@@ -50,8 +50,8 @@ struct SuggestOptions {
     /// miss, and Together meets all. Empty: by covered floor.
     std::vector<Requirement> requirements = {};
     /// Rules of cameras to keep, as requirements; those of facing without a share do not count.
-    std::vector<FacingRule> facing = {};
-    std::vector<PrivacyRule> privacy = {};
+    std::vector<camerarules::FacingRule> facing = {};
+    std::vector<camerarules::PrivacyRule> privacy = {};
     /// Scenes whose sensors may be added, too, after those of the scene: other storeys.
     std::vector<const Scene*> others = {};
 };

@@ -34,8 +34,8 @@ Coverage coverageOf(const Scene& scene, const CoverageOptions& options) {
 bool meetsRules(const Scene& scene, const SuggestOptions& options) {
     const Coverage coverage = coverageOf(scene, options.measure);
     const auto is_met = [](const auto& result) { return isMet(result); };
-    const auto faces = measureFacing(scene, coverage, options.facing);
-    const auto zones = measurePrivacy(scene, options.measure.plane, options.privacy);
+    const auto faces = camerarules::measureFacing(scene, coverage, options.facing);
+    const auto zones = camerarules::measurePrivacy(scene, options.measure.plane, options.privacy);
     return std::all_of(faces.begin(), faces.end(), is_met) &&
            std::all_of(zones.begin(), zones.end(), is_met) &&
            std::all_of(
@@ -143,7 +143,7 @@ TEST(Suggestions, MendFacesByOneCameraAhead) {
     // People walk east, and the only camera stands west of the zone. One ahead sees each face: the
     // zone is 2 m long and an eye sees 2.4 m about its foot, so a foot on the east edge suffices
     // for the half of the zone within 2.4 m and 90 degrees.
-    const SuggestOptions wanted{.facing = {parseFacing("door,90deg,0=70%")}};
+    const SuggestOptions wanted{.facing = {camerarules::parseFacing("door,90deg,0=70%")}};
     const Advised advised = adviseOn(kZones, eyeAt("w", "-2.5,0"), wanted);
     ASSERT_FALSE(advised.suggestions.empty());
     const Suggestion& first = advised.suggestions.front();
@@ -152,14 +152,14 @@ TEST(Suggestions, MendFacesByOneCameraAhead) {
     EXPECT_EQ(first.edits[0].kind, Edit::Kind::Add);
     EXPECT_NEAR(first.required, 0.7 * 4, 1e-6) << "no face is seen before";
     // Without the share there is no requirement.
-    const SuggestOptions told{.facing = {parseFacing("door,90deg,0")}};
+    const SuggestOptions told{.facing = {camerarules::parseFacing("door,90deg,0")}};
     for (const Suggestion& one : adviseOn(kZones, eyeAt("w", "-2.5,0"), told).suggestions)
         EXPECT_EQ(one.required, 0) << one.text;
 }
 
 TEST(Suggestions, MendFacesOfBothDirectionsByTwoCameras) {
-    const SuggestOptions wanted{
-        .facing = {parseFacing("door,60deg,0=60%"), parseFacing("door,60deg,180=60%")}};
+    const SuggestOptions wanted{.facing = {camerarules::parseFacing("door,60deg,0=60%"),
+                                           camerarules::parseFacing("door,60deg,180=60%")}};
     const Advised advised = adviseOn(kZones, eyeAt("n", "0,2.9"), wanted);
     ASSERT_FALSE(advised.suggestions.empty());
     const Suggestion& first = advised.suggestions.front();
@@ -170,7 +170,7 @@ TEST(Suggestions, MendFacesOfBothDirectionsByTwoCameras) {
 
 TEST(Suggestions, TurnACameraOffAPrivateZone) {
     // The picture is 60 degrees wide; the zone's corners lie within -37 and -18 degrees.
-    const SuggestOptions wanted{.privacy = {parsePrivacy("desk")}};
+    const SuggestOptions wanted{.privacy = {camerarules::parsePrivacy("desk")}};
     const Advised advised = adviseOn(
         kZones, "camera id=c at=-3.9,2.9,2.2 heading=-40 tilt=-30 fov=60 pixels=1280,720\n",
         wanted);
@@ -182,7 +182,7 @@ TEST(Suggestions, TurnACameraOffAPrivateZone) {
 
 TEST(Suggestions, RemoveADomeThatSeesAPrivateZone) {
     const SuggestOptions wanted{.requirements = {parseRequirement("20%")},
-                                .privacy = {parsePrivacy("desk")}};
+                                .privacy = {camerarules::parsePrivacy("desk")}};
     const Advised advised = adviseOn(kZones, eyeAt("e", "3.5,-2.5"), wanted);
     ASSERT_FALSE(advised.suggestions.empty());
     const Suggestion& first = advised.suggestions.front();
@@ -192,7 +192,7 @@ TEST(Suggestions, RemoveADomeThatSeesAPrivateZone) {
 }
 
 TEST(Suggestions, KeepPrivacyWhereItIsKept) {
-    const SuggestOptions wanted{.privacy = {parsePrivacy("desk")}};
+    const SuggestOptions wanted{.privacy = {camerarules::parsePrivacy("desk")}};
     // Without the rule the best change of each kind sees the zone, in the corner that is unseen.
     const std::string seers = eyeAt("a", "-1.5,0") + eyeAt("b", "1.2,0");
     EXPECT_TRUE(meetsRules(roomScene(kZones + seers), wanted));

@@ -4,12 +4,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "coverage/camera_rules.h"
+#include "extensions/camerarules/camera_rules.h"
 #include "report/report_section.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 /// Results of --facing and --privacy.
 struct CameraRules {
@@ -32,10 +33,10 @@ std::vector<JudgedRule> judgedRules(const CameraRules& rules);
 /// Builds the table of rules of cameras.
 PageTable rulesTable(std::string caption, std::span<const JudgedRule> rules);
 
-/// Rules of cameras in a room: members `facing` and `privacy`, a line for each rule.
+/// Rules of cameras in a room, which it owns: members `facing` and `privacy`, a line for each rule.
 class RulesSection final : public ReportSection {
   public:
-    explicit RulesSection(const CameraRules& rules) : rules_(rules) {}
+    explicit RulesSection(CameraRules rules) : rules_(std::move(rules)) {}
     [[nodiscard]] std::string_view name() const override { return "rules"; }
     [[nodiscard]] int rank() const override { return 10; }
     void writeJson(JsonWriter& json) const override;
@@ -43,7 +44,7 @@ class RulesSection final : public ReportSection {
     [[nodiscard]] PageAdditions page(const PageSubject& subject) const override;
 
   private:
-    const CameraRules& rules_;
+    CameraRules rules_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/camera_rules.h"
+#include "extensions/camerarules/camera_rules.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "base/error.h"
-#include "coverage/facing_meter.h"
 #include "coverage/visible_area.h"
+#include "extensions/camerarules/facing_meter.h"
 #include "scene/sensor/camera.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 namespace {
 
 const std::string kTwoZones =
@@ -326,4 +326,4 @@ TEST(CameraRules, PrivacyOfALevelIsTheViewAtItsDensity) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::camerarules

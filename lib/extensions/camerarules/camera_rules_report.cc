@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/camera_rules_report.h"
+#include "extensions/camerarules/camera_rules_report.h"
 
 #include <optional>
 #include <string_view>
@@ -10,7 +10,7 @@
 #include "env/zone.h"
 #include "report/page/coverage_page.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 namespace {
 
@@ -170,4 +170,4 @@ PageAdditions RulesSection::page(const PageSubject& subject) const {
     return added;
 }
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

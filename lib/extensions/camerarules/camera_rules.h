@@ -12,7 +12,7 @@
 #include "env/environment.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 /// Floor on which people walk in one heading.
 struct FacingPart {
@@ -100,4 +100,4 @@ bool isMet(const FacingResult& result);
 /// Returns true unless more than kMinPiece is seen, or the area seen is unknown.
 bool isMet(const PrivacyResult& result);
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "coverage/camera_rules.h"
 #include "coverage/coverage.h"
 #include "env/environment.h"
+#include "extensions/camerarules/camera_rules.h"
 #include "geom/shared_curves.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 /// Measures rules of facing again and again while few cameras move: keeps what the others see from
 /// ahead, and the zones that a move does not concern. Results are those of measureFacing(), to the
@@ -52,4 +52,4 @@ class FacingMeter {
     std::vector<std::vector<Part>> parts_;  // by rule
 };
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

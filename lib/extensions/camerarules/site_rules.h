@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "coverage/camera_rules.h"
-#include "report/camera_rules_report.h"
+#include "extensions/camerarules/camera_rules.h"
+#include "extensions/camerarules/camera_rules_report.h"
 #include "site/site_coverage.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 /// Measures rules of facing and of privacy in the storeys that have their doors or zones; a rule
 /// `GLOB/ZONE` or `GLOB/door:...` only in storeys with matching ids. Cameras of other storeys
@@ -36,8 +36,8 @@ double missingFloor(std::span<const CameraRules> rules);
 /// Returns the rules of all storeys, with the storey before each.
 std::vector<JudgedRule> judgedInSite(const SiteScene& building, std::span<const CameraRules> rules);
 
-/// Adds the sections of rules. \param rules by storey; empty: none. They outlive the sections
+/// Adds the sections of rules. \param rules by storey; empty: none
 void addRules(SiteParts& parts, const SiteScene& building, const SiteCoverage& coverage,
               const std::vector<CameraRules>& rules);
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

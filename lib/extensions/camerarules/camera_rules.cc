@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/camera_rules.h"
+#include "extensions/camerarules/camera_rules.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,17 +12,17 @@
 #include "base/glob.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "coverage/facing_meter.h"
 #include "coverage/metrics.h"
 #include "coverage/visible_area.h"
 #include "env/door_floor.h"
 #include "env/zone.h"
+#include "extensions/camerarules/facing_meter.h"
 #include "geom/curve_clip.h"
 #include "record/schema.h"
 #include "scene/sensor/camera.h"
 #include "scene/sensor/density_classes.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 namespace {
 
@@ -508,4 +508,4 @@ bool isMet(const FacingResult& result) {
 
 bool isMet(const PrivacyResult& result) { return result.seen && *result.seen <= kMinPiece; }
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/private_floor.h"
+#include "extensions/camerarules/private_floor.h"
 
 #include <algorithm>
 #include <optional>
@@ -13,7 +13,7 @@
 #include "geom/overlay/overlay.h"
 #include "scene/sensor/camera.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 namespace {
 
@@ -88,4 +88,4 @@ const PrivateFloor::Sight& PrivateFloor::knownSight(const Sensor& sensor) {
     return known_.emplace_back(Known{sensor.model, sensor.pose, seenBy(sensor)}).sight;
 }
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

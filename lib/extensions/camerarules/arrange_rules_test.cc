@@ -4,10 +4,11 @@
 
 #include <algorithm>
 
-#include "coverage/camera_rules.h"
+#include "extensions/camerarules/facing_cells.h"
+#include "extensions/camerarules/layout_privacy.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 namespace {
 
 const std::string kOffice =
@@ -29,16 +30,22 @@ std::vector<PrivacyResult> privacyOf(const Scene& scene, const Arrangement& foun
                           rules);
 }
 
+/// Returns options with the rules of privacy of a room alone.
+ArrangeOptions withPrivacy(const Scene& scene, ArrangeOptions options,
+                           const std::vector<PrivacyRule>& rules) {
+    RoomGoals goals;
+    const Environment* const room = &scene.environment;
+    askPrivacy({rules}, {&room, 1}, options, {&goals, 1});
+    return options;
+}
+
 TEST(ArrangeRules, NoLayoutSeesAPrivateZone) {
     const Scene scene = roomScene(kOffice);
     ArrangeOptions options = coarse();
     const std::vector<PrivacyRule> rules = {parsePrivacy("desk*")};
     const Arrangement plain = camerasIn(scene, options);
     EXPECT_FALSE(isMet(privacyOf(scene, plain, rules)[0]));
-    options.privacy = rules;
-    const Arrangement found = camerasIn(scene, options);
-    ASSERT_EQ(found.privacy.size(), 1U);
-    EXPECT_TRUE(isMet(found.privacy[0]));
+    const Arrangement found = camerasIn(scene, withPrivacy(scene, options, rules));
     EXPECT_TRUE(isMet(privacyOf(scene, found, rules)[0]));
     EXPECT_EQ(found.sensors.size(), 2U);
     EXPECT_LE(found.candidate_value, plain.bound);
@@ -50,30 +57,29 @@ TEST(ArrangeRules, ZonesWithoutACellAreKeptByTheirExactRegions) {
     const Scene scene = roomScene(kOffice);
     ArrangeOptions options = coarse();
     options.cells = CellSize{0.25};
-    options.privacy = {parsePrivacy("slot")};
-    EXPECT_FALSE(isMet(privacyOf(scene, camerasIn(scene, coarse()), options.privacy)[0]));
-    const Arrangement found = camerasIn(scene, options);
-    EXPECT_TRUE(isMet(privacyOf(scene, found, options.privacy)[0]));
+    const std::vector<PrivacyRule> rules = {parsePrivacy("slot")};
+    EXPECT_FALSE(isMet(privacyOf(scene, camerasIn(scene, coarse()), rules)[0]));
+    const Arrangement found = camerasIn(scene, withPrivacy(scene, options, rules));
+    EXPECT_TRUE(isMet(privacyOf(scene, found, rules)[0]));
 }
 
 TEST(ArrangeRules, PrivacyFromADensityOnAllowsCamerasFarAway) {
     const Scene scene = roomScene(kOffice);
     ArrangeOptions options = coarse();
     options.pixel_density = 300;  // limits coverage, not privacy
-    options.privacy = {parsePrivacy("desk1,200")};
-    const Arrangement far = camerasIn(scene, options);
-    EXPECT_TRUE(isMet(privacyOf(scene, far, options.privacy)[0]));
-    options.privacy = {parsePrivacy("desk1")};
-    const Arrangement none = camerasIn(scene, options);
-    EXPECT_TRUE(isMet(privacyOf(scene, none, options.privacy)[0]));
+    const std::vector<PrivacyRule> near = {parsePrivacy("desk1,200")};
+    const Arrangement far = camerasIn(scene, withPrivacy(scene, options, near));
+    EXPECT_TRUE(isMet(privacyOf(scene, far, near)[0]));
+    const std::vector<PrivacyRule> any = {parsePrivacy("desk1")};
+    const Arrangement none = camerasIn(scene, withPrivacy(scene, options, any));
+    EXPECT_TRUE(isMet(privacyOf(scene, none, any)[0]));
     EXPECT_LT(none.candidates, far.candidates);
     EXPECT_LE(none.candidate_value, far.bound);
 }
 
 TEST(ArrangeRules, NoPlaceIsLeft) {
     const Scene scene = roomScene(kOffice + "zone id=all path=-4,-3;4,-3;4,3;-4,3\n");
-    ArrangeOptions options = coarse();
-    options.privacy = {parsePrivacy("all")};
+    ArrangeOptions options = withPrivacy(scene, coarse(), {parsePrivacy("all")});
     options.mount.tilts = {Angle::degrees(-90)};
     EXPECT_THROW(camerasIn(scene, options), UnmetError);
     options.strategy = Strategy::Random;
@@ -87,11 +93,12 @@ TEST(ArrangeRules, FacesCountByTheExactRule) {
     options.cells = CellSize{0.05};
     options.weights.targets = {readZone("entrance", scene.environment)};
     const FacingRule rule = parseFacing("entrance,45deg");
-    options.facing = facingIn(scene.environment, {&rule, 1});
+    const std::vector<FacingRule> rules = facingIn(scene.environment, {&rule, 1});
+    options.cover_rule = coverRuleOf(rules);
     const Arrangement found = camerasIn(scene, options, {"camera"});
     const Scene whole = withPlaced(scene, groupsOf(scene, {"camera"}), found.sensors);
     RayScenes worlds(whole.environment);
-    const auto faced = measureFacing(whole, measureCoverage(whole, worlds, {}), options.facing);
+    const auto faced = measureFacing(whole, measureCoverage(whole, worlds, {}), rules);
     ASSERT_EQ(faced.size(), 1U);
     EXPECT_NEAR(found.value.value(), faced[0].share.value(), 0.02);
     EXPECT_NEAR(found.candidate_value, *found.value, 1e-9);
@@ -109,13 +116,13 @@ TEST(ArrangeRules, StandingCamerasSeeFacesToo) {
     const Scene scene = roomScene(kOffice, &layout);
     ArrangeOptions options = coarse();
     options.weights.targets = {readZone("entrance", scene.environment)};
-    options.facing = {parseFacing("entrance,60deg,-90")};
+    options.cover_rule = coverRuleOf({parseFacing("entrance,60deg,-90")});
     const Arrangement ahead = camerasIn(scene, options, {"laser,range=1"});
     EXPECT_GT(ahead.candidate_value, 0.3);
     EXPECT_NEAR(ahead.candidate_value, ahead.value.value(), 1e-9);
-    options.facing = {parseFacing("entrance,60deg,90")};
+    options.cover_rule = coverRuleOf({parseFacing("entrance,60deg,90")});
     EXPECT_EQ(camerasIn(scene, options, {"laser,range=1"}).candidate_value, 0);
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::camerarules

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/private_floor.h"
+#include "extensions/camerarules/private_floor.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 namespace {
 
 // One zone reaches out of the room, one lies behind a wall of boxes, two overlap, one is outdoors.
@@ -61,4 +61,4 @@ TEST(PrivateFloor, MeasuresEqualCamerasOnce) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::camerarules

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "coverage/camera_rules.h"
 #include "coverage/visible_area.h"
 #include "env/environment.h"
+#include "extensions/camerarules/camera_rules.h"
 #include "geom/curve.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 /// Measures the private floor that single cameras see in one environment, as measurePrivacy() of a
 /// scene with that camera alone, within rounding. Finds the floor of each zone once, and looks only
@@ -58,4 +58,4 @@ class PrivateFloor {
     std::vector<Known> known_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

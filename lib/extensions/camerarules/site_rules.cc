@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "site/site_rules.h"
+#include "extensions/camerarules/site_rules.h"
 
 #include <cstddef>
 #include <functional>
@@ -14,7 +14,7 @@
 #include "env/zone.h"
 #include "report/page/coverage_page.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 
 namespace {
 
@@ -219,4 +219,4 @@ void addRules(SiteParts& parts, const SiteScene& building, const SiteCoverage& c
     parts.sum.push_back(std::make_shared<SiteRulesSection>(judgedInSite(building, rules)));
 }
 
-}  // namespace ispace
+}  // namespace ispace::camerarules

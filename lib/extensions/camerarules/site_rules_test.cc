@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "site/site_rules.h"
+#include "extensions/camerarules/site_rules.h"
 
-namespace ispace {
+namespace ispace::camerarules {
 namespace {
 
 /// Two storeys; each has a door in its south wall, and only the lower one a camera before it.
@@ -121,4 +121,4 @@ TEST(BuildingFacing, UnknownDoorsListThoseOfAllStoreys) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::camerarules

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a folder of lib/extensions asks of the layouts of arrange besides an objective: options,
+// rules for the search, and what becomes of them in a layout. See cli/extension.h.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arrange/arrange.h"
+#include "cli/command_line.h"
+#include "cli/site_operands.h"
+#include "site/site_coverage.h"
+
+namespace ispace {
+
+/// A layout that was found, and the site with it.
+struct ArrangedSite {
+    const SiteInput& input;
+    const ArrangeSite& site;  ///< in which it was searched
+    const std::vector<SensorGroup>& groups;
+    const ArrangeOptions& how;
+    const Arrangement& found;
+    const SiteScene& placed;
+    const SiteCoverage* coverage = nullptr;  ///< of `placed`; null: not measured yet
+};
+
+/// What groups find out about a layout.
+struct ArrangeFindings {
+    /// A sentence without full stop, for stderr.
+    struct Line {
+        std::string text;
+        bool is_unmet = false;  ///< the tool exits with 3
+    };
+    std::vector<Line> lines = {};
+    SiteParts parts = {};  ///< sections of the report, which own what they write
+};
+
+/// The options of one extension, and their values: an object is made for each command line. The
+/// layouts of a batch share it: const functions are thread-safe.
+class ArrangeGroup {
+  public:
+    virtual ~ArrangeGroup() = default;
+    /// Declares the options, bound to members. The group begins with line.group(HEADING).
+    virtual void declare(CommandLine& line) = 0;
+    /// Checks the options with each other and with those of the tool. Opens no file.
+    /// \throws UsageError
+    virtual void take(const CommandLine& line, const ArrangeOptions& how) = 0;
+    [[nodiscard]] virtual bool isAsked() const = 0;
+    /// Returns those of its options that say which floor counts: objectives that count something
+    /// else refuse them.
+    [[nodiscard]] virtual std::vector<std::string_view> ofFloor() const { return {}; }
+    /// Returns sentences for stderr before the search. \pre isAsked()
+    [[nodiscard]] virtual std::vector<std::string> notes(const ArrangeOptions& /*how*/) const {
+        return {};
+    }
+    /// Adds its rules to the goals of the rooms, and to the options what is asked of any room.
+    /// \pre isAsked() \throws UsageError for names that the site lacks
+    virtual void aim(const SiteInput& input, ArrangeOptions& how,
+                     std::span<RoomGoals> goals) const = 0;
+    /// Judges a layout. \pre isAsked()
+    virtual void judge(const ArrangedSite& site, ArrangeFindings& findings) const = 0;
+};
+
+/// A row of Extensions, see cli/extension.h.
+struct ArrangeRow {
+    std::string_view extension;
+    std::unique_ptr<ArrangeGroup> (*make)();
+};
+
+/// The groups that extensions add to one command line.
+class ArrangeExtensions {
+  public:
+    /// \param rows in the order of `--help` and of reports
+    explicit ArrangeExtensions(std::span<const ArrangeRow> rows);
+    void declare(CommandLine& line);
+    /// As those of ArrangeGroup, for all of them, or those that are asked.
+    void take(const CommandLine& line, const ArrangeOptions& how) const;
+    [[nodiscard]] bool isAsked() const;
+    [[nodiscard]] std::vector<std::string_view> ofFloor() const;
+    [[nodiscard]] std::vector<std::string> notes(const ArrangeOptions& how) const;
+    void aim(const SiteInput& input, ArrangeOptions& how, std::span<RoomGoals> goals) const;
+    [[nodiscard]] ArrangeFindings judge(const ArrangedSite& site) const;
+
+  private:
+    struct Member {
+        std::string extension;
+        std::unique_ptr<ArrangeGroup> group;
+    };
+    std::vector<Member> members_;
+};
+
+}  // namespace ispace
