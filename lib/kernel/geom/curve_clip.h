@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts outlines of views along a box: the parts within a room and those beyond.
 #pragma once
 
 #include <span>
@@ -14,10 +15,14 @@ struct CutCurves {
 };
 
 /// Cuts closed curves (outlines and holes, with the area on their left) along the sides of a box:
-/// one side after another (Sutherland and Hodgman, 1974), arcs in closed form. Cut points lie
-/// exactly on the sides. Parts of one curve may be joined by edges that run along a side in both
-/// directions: their areas cancel out in signedArea() and in an overlay. Curves within the box are
-/// returned unchanged. O(n)
+/// one side after another (I. E. Sutherland, G. W. Hodgman, Reentrant polygon clipping, 1974), arcs
+/// in closed form. Cut points lie exactly on the sides, rounded along them. Parts of one curve may
+/// be joined by edges that run along a side in both directions: their areas cancel out in
+/// signedArea() and in an overlay. Curves within the box are returned unchanged. The areas inside
+/// and outside add up to the whole, up to rounding. O(n)
+///
+///     const CutCurves cut = cutAlong(view, {{0, 0}, {8, 5}});
+///     const double in_room = signedArea(cut.inside);
 CutCurves cutAlong(std::span<const Curve> curves, const Box2& box);
 
 }  // namespace ispace

@@ -218,7 +218,7 @@ using Index = std::uint32_t;
 constexpr Index kNone = ~Index{0};
 
 /// Multilinear hashing by random keys: any two positions collide with the probability of random
-/// hashes (Lemire and Kaser, Strongly Universal String Hashing is Fast, 2014).
+/// hashes (O. Kaser, D. Lemire, Strongly universal string hashing is fast, 2014).
 class PlaceHash {
   public:
     PlaceHash() {

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/geom: angles, points, poses, polygons, regions, exact predicates, overlays,
 // visibility. Uses base and Eigen; CGAL in sources alone.
+//
+// Angles, points and vectors of the plane and of space. Frames are right-handed: x-y is the floor,
+// z is up, angles count counter-clockwise seen from above. Metres everywhere. Types carry roles:
+// the difference of two points is a vector, a sum of two points does not compile. All types are
+// plain values, all functions pure; coordinates may be infinite (Box2) but NaN is not handled:
+// readers reject it. Results round as doubles do unless a comment says exact.
+//
+//     const Point2 corner{4, 3};
+//     const Vec2 way = corner - Point2{0, 0};
+//     const double range = length(way);                               // 5 m
+//     const Angle bearing = directionOf(way.x, way.y);                // 36.87 degrees
+//     const Point2 back = corner - range * unitVector(bearing);       // (0, 0), but for rounding
 #pragma once
 
 #include <algorithm>
@@ -14,7 +26,9 @@ namespace ispace {
 /// A plane angle; the unit is named where one is made or read. Counter-clockwise is positive.
 ///
 /// Stored in degrees, the unit of files and options, so that 90 is exactly a quarter turn: cosine
-/// and sine are exact at multiples of 90 degrees and rectangular walls stay rectangular.
+/// and sine are exact at multiples of 90 degrees and rectangular walls stay rectangular. Not
+/// reduced: 370 degrees and 10 degrees differ until wrapped(). Converting radians rounds twice, so
+/// radians(degrees(a)) may differ from a by an ulp.
 class Angle {
   public:
     constexpr Angle() = default;
@@ -34,16 +48,22 @@ class Angle {
     double degrees_ = 0;
 };
 
+/// Cosine and sine of one angle.
 struct CosSin {
     double cos, sin;
 };
-/// Computes both at once; exact at multiples of 90 degrees.
+/// Computes both at once; exact at multiples of 90 degrees, where zeros are positive.
+///
+/// The angle is reduced in degrees, where the remainder modulo 90 is exact for any size; cosine and
+/// sine of the rest, within 45 degrees, are those of the standard library. So 1e9 * 360 + 30
+/// degrees has the sine of 30 degrees.
 CosSin cosSin(Angle angle);
 double cos(Angle angle);
 double sin(Angle angle);
+/// Infinite at odd multiples of 90 degrees.
 double tan(Angle angle);
 
-/// The same direction within (-180, 180] degrees.
+/// The same direction within (-180, 180] degrees; exact, by whole turns.
 Angle wrapped(Angle angle);
 
 /// Direction of the vector (x, y), in (-180, 180]; 0 for the null vector.
@@ -83,15 +103,17 @@ inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
 inline Vec2 operator-(Vec2 v) { return {-v.x, -v.y}; }
 inline Vec2 operator*(double s, Vec2 v) { return {s * v.x, s * v.y}; }
 inline double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
-/// z component of the cross product: positive if b lies to the left of a. Rounds; decisions go
-/// through orientation() in predicates.h.
+/// z component of the cross product: positive if b lies to the left of a. Rounds, by 2^-52 of the
+/// sum of its two products at most; decisions go through orientation() in predicates.h.
 inline double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
+/// Euclidean length; neither overflows nor underflows within (std::hypot).
 inline double length(Vec2 v) { return std::hypot(v.x, v.y); }
 /// Lexicographic order: by x, then by y.
 inline bool lexLess(Point2 a, Point2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); }
 inline double distance(Point2 a, Point2 b) { return length(b - a); }
 /// v turned left by a quarter turn.
 inline Vec2 perpendicular(Vec2 v) { return {-v.y, v.x}; }
+/// Exact at multiples of 90 degrees.
 inline Vec2 unitVector(Angle heading) {
     const auto [c, s] = cosSin(heading);
     return {c, s};
@@ -106,17 +128,21 @@ inline Vec3 cross(Vec3 a, Vec3 b) {
 }
 inline double length(Vec3 v) { return std::hypot(v.x, v.y, v.z); }
 
-/// Axis-parallel rectangle on the floor; empty until a point is added.
+/// Axis-parallel closed rectangle on the floor; empty until a point is added. A point or a line is
+/// a box without area, not an empty one.
 struct Box2 {
     Point2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     Point2 high{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
 
     [[nodiscard]] bool empty() const { return low.x > high.x || low.y > high.y; }
+    /// Extent in x, metres; negative infinity if empty.
     [[nodiscard]] double width() const { return high.x - low.x; }
     [[nodiscard]] double depth() const { return high.y - low.y; }
+    /// Halves before it adds, so that the largest boxes do not overflow. \pre not empty
     [[nodiscard]] Point2 center() const {
         return {low.x + (high.x - low.x) / 2, low.y + (high.y - low.y) / 2};
     }
+    /// Grows to contain p.
     void add(Point2 p) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};

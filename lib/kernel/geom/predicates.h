@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside lib/kernel/geom: exact predicates, and the sign of the in-circle determinant in
 // double-double arithmetic.
+//
+// Guarantees. orientation() and intersects() return the sign of the real-number formula for the
+// doubles given, for any finite coordinates: neither overflow nor underflow nor collinear input
+// changes it. Functions that compute a point or a distance round, and say so. All are pure
+// functions: thread-safe, the same result on every run.
+//
+// Method: a floating-point filter with a forward error bound, exact numbers where the filter fails
+// (J. R. Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
+// predicates, 1997; exact numbers are CGAL's). The filter decides all but nearly collinear triples
+// with five subtractions and two products: 10 to 20 ns for random triples, where branches are
+// mispredicted, against 100 ns for triples along one line (2.6 GHz).
+//
+//     const Turn turn = orientation({0, 0}, {1, 0}, {1, 1});         // Turn::Left
+//     const bool meet = intersects({{0, 0}, {2, 2}}, {{0, 2}, {2, 0}});  // true
 #pragma once
 
 #include <cmath>
@@ -14,19 +28,28 @@
 
 namespace ispace {
 
+/// Side of a directed line on which a point lies; Left is counter-clockwise.
 enum class Turn { Right = -1, Straight = 0, Left = 1 };
 
-/// Computes on which side of the line a -> b the point c lies; exact for the given doubles
-/// (adaptive arithmetic).
+/// Computes on which side of the line a -> b the point c lies: the sign of
+/// (a - c) x (b - c), exact for the given doubles. Straight if a == b.
+///
+/// Filter: with u = 2^-53 the determinant of rounded differences errs by at most
+/// (3 + 16 u) u < 3.4e-16 of the sum of the magnitudes of its two products (Shewchuk 1997), unless
+/// a product underflows; sums below 1e-280 go to exact numbers.
+/// \pre coordinates are finite
 Turn orientation(Point2 a, Point2 b, Point2 c);
 
-/// True if the closed segments share a point; exact.
+/// True if the closed segments share a point; exact. Segments may touch, overlap, or have zero
+/// length (a point). Symmetric in s and t.
 bool intersects(const Segment2& s, const Segment2& t);
 
-/// Computes the distance of p from the closed segment; rounds.
+/// Computes the distance of p from the closed segment, in metres; that of nearestPoint(), so it
+/// errs by some ulp of the coordinates. A segment of zero length is its point a.
 double distance(Point2 p, const Segment2& s);
 
-/// Computes the point of the closed segment nearest to p; rounds.
+/// Computes the point of the closed segment nearest to p: an end exactly where an end is nearest,
+/// else rounded, by some ulp of the coordinates off the line.
 Point2 nearestPoint(const Segment2& s, Point2 p);
 
 /// The thesis' Insider Judge (section 4.4.4): p is inside if the segment from p to a point known
@@ -36,11 +59,14 @@ Point2 nearestPoint(const Segment2& s, Point2 p);
 /// equation of the other, but with exact signs. An end point on the line counts as left of it, so
 /// that a vertex shared by two walls is crossed once or twice, never half. Agrees with the exact
 /// test where wall lines are simple closed curves; unlike that, it errs if a free-standing wall
-/// lies between p and the known point. O(n).
+/// lies between p and the known point. O(n): four orientations a wall, no index. For many queries
+/// use PointLocation of lib/kernel/env.
 bool insideByParity(Point2 p, Point2 known_inside, std::span<const Segment2> walls);
 
-/// An unevaluated sum of two doubles, the second at most half an ulp of the first (Dekker 1971). A
-/// product or sum errs by at most 2^-102 of its operands' magnitudes.
+/// An unevaluated sum of two doubles, the second at most half an ulp of the first: some 106 bits
+/// (T. J. Dekker, A floating-point technique for extending the available precision, 1971). A
+/// product or sum errs by at most 2^-102 of its operands' magnitudes. Has neither comparisons nor
+/// division. Overflow gives NaN in `low`.
 struct DoublePair {
     double high = 0, low = 0;
 
@@ -64,7 +90,9 @@ struct DoublePair {
     }
 };
 
-/// Computes surelyInCircle() in doubles if they suffice, with the bound of Shewchuk (1997).
+/// Computes surelyInCircle() in doubles if they suffice, else 0: the first stage of Shewchuk's
+/// filter (1997), which errs by at most (10 + 96 u) u, u = 2^-53, of the determinant's permanent;
+/// 12 u is used here.
 inline int roughlyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     const Vec2 u = a - d, v = b - d, w = c - d;
     const double vw = v.x * w.y, wv = w.x * v.y, wu = w.x * u.y, uw = u.x * w.y;
@@ -81,7 +109,9 @@ inline int roughlyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
 
 /// Positive if d surely lies within the circle through a, b, c (counter-clockwise), negative if
 /// surely outside, 0 if it may lie on it: nearer than some 2^-90 of the extent, or where numbers
-/// are so large or small that products leave the range of doubles.
+/// are so large or small that products leave the range of doubles. A caller that needs the sign of
+/// a 0 asks exact numbers. Pairs of doubles take 50 ns, a sixth of the time of these, and decide
+/// rectangles with rotated and rounded corners: 0 remains for those on one circle exactly.
 inline int surelyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
     if (const int side = roughlyInCircle(a, b, c, d); side != 0) return side;
     using Pair = DoublePair;
@@ -107,13 +137,15 @@ inline int surelyInCircle(Point2 a, Point2 b, Point2 c, Point2 d) {
 }
 
 /// Runs work() isolated from the parallel loop around it: if that loop ends by an exception, loops
-/// within work() continue.
+/// within work() continue. Returns after work() has returned.
 /// \throws exceptions of work()
 void runUncancelled(const std::function<void()>& work);
 
 /// Returns the value of work(), for values that outlive the parallel loop in which they are first
 /// requested. Once a task of that loop throws, oneTBB silently skips all loops within its other
 /// tasks, which would store incomplete values. Loops within work() run to their end.
+///
+///     const auto boxes = uncancelled([&] { return boundsOfEach(polygons); });
 /// \throws exceptions of work()
 template <typename Work>
 auto uncancelled(Work work) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tolerances, each with its reason: bounds of the rounding errors of equal values. Constants
 // that belong to one algorithm, such as its largest step, stand beside it.
+//
+// A tolerance decides whether two computed values are the same value. It never decides a side:
+// left, right and collinear are those of orientation() in predicates.h.
 #pragma once
 
 namespace ispace {

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside lib/kernel/geom only: finds points and edges of the lattice by the square cell that holds
 // them.
+//
+// Uniform grids, of which crowded cells are divided again: most overlays are spread evenly, and one
+// level answers; views that end at one wall crowd, and levels below part them. Sides are powers of
+// two, so a cell is a shift. Candidates within kReach are never missed; more may be visited. Orders
+// depend on the input alone. Grids are immutable once built and thread-safe.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +19,14 @@
 
 namespace ispace::lattice {
 
-/// In steps of the lattice, in x as well as in y.
+/// Distance within which points and edges are found, in steps of the lattice, in x as well as in y.
+/// Snap rounding needs 1 for ends, 1/2 for pixels.
 constexpr std::int32_t kReach = 2;
 /// Few enough to test each, or each with each.
 constexpr std::size_t kFew = 32;
 
-/// Square cells over a box; their sides are powers of two.
+/// Square cells over a box; their sides are powers of two. Points outside the box have a column or
+/// row outside [0, columns()).
 class CellGrid {
   public:
     /// Chooses the smallest cells of which there are at most so many.

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside lib/kernel/geom only: the lattice to which overlays are rounded, and edges between its
 // points.
+//
+// Coordinates are integers below 2^29, so that orientation, order along an edge and the pixel of a
+// crossing are exact in 64 bits (the rounding of a crossing in 128 where a double cannot decide):
+// no predicate below has an error bound, because none rounds. Deterministic; functions that run
+// several threads say so, and their results do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -23,6 +28,7 @@ using plane::kNone;
 /// product of differences is at most 2^(2 * kBits + 3), twice of that is still less than 2^63.
 constexpr int kBits = 29;
 
+/// A point of the lattice, in steps from its middle.
 struct Point {
     std::int32_t x = 0, y = 0;
     friend bool operator==(const Point&, const Point&) = default;
@@ -57,7 +63,7 @@ struct Box {
     }
 };
 
-/// Distinct points, numbered in the order of arrival.
+/// Distinct points, numbered in the order of arrival. Not thread-safe while points are added.
 class PointTable {
   public:
     void reserve(std::size_t count);
@@ -91,8 +97,7 @@ class SetStore {
         return std::span(items_).subspan(first_[own], first_[own + 1] - first_[own]);
     }
     /// Finds the set of the layers that are in an odd number of sets. \param layers of all sets one
-    /// after
-    /// another; sorted in place
+    /// after another; sorted in place
     Index addOdd(std::vector<Index>& layers);
 
   private:
@@ -114,8 +119,8 @@ struct Edge {
 };
 
 /// Merges equal edges and turns each from its lower end (lexLess); of their circles the lowest
-/// number remains. Edges without length, and those
-/// that cancel out in the boundary of each layer, are removed unless they are walls. O(n)
+/// number remains. Edges without length, and those that cancel out in the boundary of each layer,
+/// are removed unless they are walls. O(n)
 std::vector<Edge> merged(std::vector<Edge> edges, const std::vector<Point>& points, SetStore& sets);
 
 /// Columns of the lattice, both ends included.
@@ -152,9 +157,11 @@ struct EdgeWaypoints {
     }
 };
 
-/// Snap rounding (Hobby 1999), in three steps; see snapRounded(). Edges are merged() before each.
+/// Snap rounding (J. D. Hobby, Practical segment intersection with finite precision output, 1999),
+/// in three steps; see snapRounded(). Edges are merged() before each.
 ///
-/// First, edges pass the ends of others within the square of half-width 1 about them.
+/// First, edges pass the ends of others within the square of half-width 1 about them. In blocks of
+/// edges, by several threads.
 std::vector<Edge> splitAtVertices(const std::vector<Edge>& edges, const std::vector<Point>& points);
 /// Then, edges pass all ends and crossings in these columns, rounded to the lattice, which are
 /// inserted in the table. Crossings in other columns are ignored.

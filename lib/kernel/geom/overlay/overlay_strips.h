@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside lib/kernel/geom only: computes large overlays in strips, each small enough for caches, in
 // parallel.
+//
+// A strip is a range of columns of the lattice. Snap rounding decides each pixel by the edges that
+// meet it, so strips are independent but for edges that cross them: routes are computed in each
+// strip and joined. The union of the parts equals the result in one piece, edge by edge
+// (overlay_strips_test compares them wherever strips end).
 #pragma once
 
 #include <cstddef>

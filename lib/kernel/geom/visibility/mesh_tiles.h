@@ -18,7 +18,11 @@ namespace ispace {
 /// The meshes of a plan: one of all its lines and, in a large plan, those of tiles with a margin. A
 /// bounded view reads the mesh of the tile that it begins in, so that few views in a large plan pay
 /// for their surroundings alone, and threads build several meshes at once. The view is the same in
-/// both, but may be listed from another edge on.
+/// both, but may be listed from another edge on: VisibilityMap lists it from a line on, so that its
+/// bytes do not depend on tiles.
+///
+/// Meshes are built by the first view in a tile, by one thread, while others wait for it; they are
+/// kept until the end. A tile is several margins wide, so that lines near borders lie in few tiles.
 class MeshTiles {
   public:
     /// Builds the mesh of a small plan; a large one is divided into pieces only.

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/geom/visibility: the regions that points see, and the rays that bound them.
+//
+//     const VisibilityMap map(walls);                          // once for a room
+//     VisibleRegion region;
+//     map.query({2, 1}, 8, region);                            // all around, up to 8 m
+//     const double seen = area(sectorOf(region, Angle::degrees(-45), Angle::degrees(90)));
 #pragma once
 
 #include <cstdint>
@@ -39,7 +44,7 @@ struct VisibleRegion {
     std::vector<VisibilityEdge> edges;
 };
 
-/// Area of the region in closed form. O(edges)
+/// Area of the region, m2, in closed form: triangles and sectors of the circle. O(edges)
 double area(const VisibleRegion& region);
 /// Builds the boundary, including lines of sight; empty for an empty region. O(edges)
 Curve outlineOf(const VisibleRegion& region);
@@ -52,18 +57,22 @@ bool holds(const VisibleRegion& region, Point2 p);
 /// Answers visibility queries among lines, from anywhere in the plane.
 ///
 /// Lines are closed, infinitely thin and block the view; they may cross, overlap, dangle and have
-/// zero length. Beyond all lines the view is free. Triangular expansion (Bungiu et al., 2014) over
-/// a constrained triangulation: the view passes from triangle to triangle through edges that are
-/// not part of a line. Left and right of a line of sight are decided exactly; the ends of edges are
-/// rounded once. Lines that cross, or touch to within noded()'s rounding, meet in one point.
+/// zero length. Beyond all lines the view is free. Triangular expansion (F. Bungiu et al.,
+/// Efficient computation of visibility polygons, 2014) over a constrained triangulation: the view
+/// passes from triangle to triangle through edges that are not part of a line. Left and right of a
+/// line of sight are decided exactly; the ends of edges are rounded once. Lines that cross, or
+/// touch to within noded()'s rounding, meet in one point.
 ///
 /// Round bodies are closed sets. Their shadows begin at the true tangents, in closed form; their
 /// visible sides are edges of outlineOf(), which has the body's area. From inside, deeper than
 /// kRayEpsilon, the region is empty; within that depth the view passes into the body, up to its far
-/// side.
-/// Areas err by less than 1e-6 m2 for bodies of up to 1 m radius.
+/// side. Areas err by less than 1e-6 m2 for bodies of up to 1 m radius.
 ///
-/// Memory: 200 to 600 bytes a line. Thread-safe. Coordinates and ranges are clamped to 1e75 m.
+/// The region depends on lines, bodies, viewpoint and range alone: the same bytes for any number of
+/// threads, whichever mesh of a large plan serves the view, and whichever queries came before. A
+/// query takes a fraction of a microsecond in a small plan and 2 us in a building of 8 000 walls
+/// (visibility_bench). Memory: 200 to 600 bytes a line. Thread-safe. Coordinates and ranges are
+/// clamped to 1e75 m.
 class VisibilityMap {
   public:
     /// O(n log n + crossings) \throws FormatError (without a line number) for lines that cross by

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to VisibilityMap: the triangulation that a view expands through.
+//
+// Lines are cut by noded() (arrangement.h), triangulated with a box around them by CGAL's
+// constrained Delaunay triangulation, and stored as 96 bytes a triangle along a Morton curve, so
+// that a view reads memory in order. Built in O(n log n + crossings), in part by several threads;
+// immutable and thread-safe after that.
 #pragma once
 
 #include <algorithm>

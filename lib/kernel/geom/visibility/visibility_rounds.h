@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to VisibilityMap: cuts the shadows of round bodies from a region.
+//
+// A direction is the tangent w of its angle from the middle of the shadow: the inverse range of a
+// straight line is linear in w. The near side of a body is the edges of its outline between the
+// true tangents, so body and region are compared by closed forms, interval by interval, never by
+// sampled rays. Cutting another body's shadow from the result is exact up to rounding, too: bodies
+// may come in any order, and the nearest first is faster. Thread-safe once built.
 #pragma once
 
 #include <cstdint>
