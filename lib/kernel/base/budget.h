@@ -22,14 +22,21 @@ struct WorkLimit {
 /// A few bytes can request any amount of work: blocks inserted in a grid, groups that use groups,
 /// parts in parts. A reader that repeats elements takes units before it does the work, even for
 /// elements without geometry. A unit is the work of one point, element or record, at most about a
-/// microsecond, or 64 bytes of text that is copied or read again.
+/// microsecond, or 64 bytes of text that is copied or read again: 20 million units are some 20 s at
+/// most.
+///
+/// Units are counted, not timed, so the same input is accepted or rejected on every machine. Not
+/// thread-safe: one reader owns a budget, and the budgets of its parts name it as `whole`.
+///
+///     Budget budget(bytes.size());
+///     if (!budget.take(count)) throw FormatError({name, line, 0, "repeats " + budget.excess()});
 class Budget {
   public:
     static constexpr std::uint64_t kMinValue = 1'000'000;  ///< for any input
     static constexpr std::uint64_t kPerByte = 4;           ///< added for each byte of the input
     static constexpr std::uint64_t kMaxWork = 20'000'000;  ///< for any input, without --max-work
 
-    /// \param bytes of the input
+    /// \param bytes of the input \param limit its `whole`, if any, outlives this
     explicit Budget(std::size_t bytes, const WorkLimit& limit = {}) : given_(limit) {
         grant(bytes);
     }
@@ -41,7 +48,9 @@ class Budget {
             std::min(kMaxWork, kMinValue + kPerByte * std::min(bytes_, kMaxWork)));
     }
 
+    /// Units in all: min(kMaxWork, kMinValue + kPerByte * bytes), or WorkLimit::max.
     [[nodiscard]] std::uint64_t limit() const { return limit_; }
+    /// Units that take() would grant, the least of this budget and those above it.
     [[nodiscard]] std::uint64_t left() const {
         const std::uint64_t own = limit_ - spent_;
         return given_.whole == nullptr ? own : std::min(own, given_.whole->left());
@@ -56,7 +65,7 @@ class Budget {
         spent_ += units;
         return true;
     }
-    /// Returns true if units were refused.
+    /// Returns true once units were refused; it stays true.
     [[nodiscard]] bool isExceeded() const { return is_exceeded_; }
 
     /// Takes units for text that is copied or read again.

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads untrusted files (meshes, archives) in a separate process without rights: no files but those
+// handed over, no network, bounded memory and time, see base/module/confine.h. A parser that its
+// input takes over can send wrong bytes to its parent, which must check them, and has no other way
+// out.
+//
+// The parent alone opens files, pays for work by its Budget and turns every failure of the child,
+// crashes and silence included, into one FormatError. A child that idles ends after five times its
+// processor time on the wall clock. Without seccomp reading fails unless --unconfined allows it.
+//
+//     ConfinedReader reader;  // one process for many files
+//     const std::string triangles = reader.read(task);
 #pragma once
 
 #include <cstddef>
@@ -62,7 +73,9 @@ struct ConfinedTask {
 };
 
 /// Reads files with one process, which is started for the first file and again after an error: a
-/// start takes some 50 ms, mostly for loading libraries. Limits apply to each file.
+/// start takes some 50 ms, mostly for loading libraries. Limits apply to each file. Not
+/// thread-safe; several readers may run at once, each with its process. The destructor kills the
+/// process.
 class ConfinedReader {
   public:
     ConfinedReader();

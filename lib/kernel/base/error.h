@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/base: errors, numbers, files, history lines, JSON, progress. zlib, TBB inside.
+//
+// The library throws three kinds of errors and prints none: UsageError for the command line,
+// FormatError for data (each finding with file, line and column), std::system_error for the system.
+// runTool alone catches them, prints one line for each finding and picks the exit status. An answer
+// such as "not visible" is no error: it is an optional or an enumerator.
+//
+//     Diagnostics problems;
+//     if (length == 0) problems.add({file, line, column, "wall has zero length"});
+//     problems.throwIfAny();  // room.env:14:7: error: wall has zero length
 #pragma once
 
 #include <cstddef>
@@ -44,7 +53,7 @@ struct Diagnostic {
     [[nodiscard]] std::string text() const;
 };
 
-/// Bad data: one or more findings, in the order of the input. Exit status 1.
+/// Bad data: one or more findings, in the order of the input. Exit status 1. what() is the first.
 class FormatError : public std::runtime_error {
   public:
     explicit FormatError(Diagnostic diagnostic);
@@ -62,12 +71,14 @@ class Diagnostics {
     /// Number of findings stored; further ones are only counted.
     static constexpr std::size_t kMax = 20;
 
+    /// Appends a finding, or counts it if kMax are stored.
     void add(Diagnostic diagnostic);
     /// Inserts the findings of a caught error.
     void add(const FormatError& error);
     [[nodiscard]] bool empty() const { return kept_.empty(); }
     [[nodiscard]] bool full() const { return kept_.size() >= kMax; }
-    /// Throws FormatError if there is any finding.
+    /// Throws FormatError if there is any finding, warnings included; the last one tells how many
+    /// were only counted.
     void throwIfAny() const;
 
   private:
@@ -79,7 +90,8 @@ class Diagnostics {
 std::string displayName(std::string_view operand);
 
 /// Receives the progress of long work and tells it when to stop. The library calls it; the tool
-/// decides how to show it.
+/// decides how to show it. Phases do not nest. Progress never changes a result, but stopped() ends
+/// a search early, with the best result so far.
 class Progress {
   public:
     virtual ~Progress() = default;
@@ -89,6 +101,7 @@ class Progress {
     virtual void advance(std::int64_t count) = 0;
     /// Reports the state in a few words: "best 85.7 %, at most 85.9 %". Callable from any thread.
     virtual void note(std::string_view /*text*/) {}
+    /// Ends the phase.
     virtual void end() = 0;
     /// True once a search should return its best result so far, after a signal or at a time limit.
     /// Cheap; callable from any thread.

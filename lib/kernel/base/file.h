@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Files as whole inputs and as atomic outputs. "-" is standard input or output.
+//
+// Errors of the system are std::system_error that name the file as the user did; interrupted and
+// non-blocking calls are repeated. Inputs and outputs pass FileGuard and InputSandbox, see
+// run_files.h. Objects are not thread-safe; different ones may be used at once.
+//
+//     const std::string text = readAll("room.env");
+//     OutputFile file("room.3dm");
+//     file.write(compiled);
+//     file.commit();  // without it, as after an exception, the old room.3dm stays
 #pragma once
 
 #include <bit>
@@ -49,7 +59,8 @@ RegularFile openRegular(const std::string& path);
 /// named by another file must be regular, else it is rejected without being opened.
 enum class InputKind { Any, Regular };
 
-/// Reads a whole file, or standard input for "-".
+/// Reads a whole file, or standard input for "-", with one allocation for a regular file that does
+/// not grow; at most kMaxFileBytes, or kMaxStreamBytes of a pipe or device.
 /// \throws std::system_error naming the file; also for a directory
 /// \throws FormatError naming the file if it is too large, is not regular where a regular file is
 /// required, or is a pipe or device that begins with 64 KiB of zeros
@@ -62,7 +73,8 @@ class InputFile {
     /// regular where a regular file is required
     explicit InputFile(const std::string& operand, InputKind kind = InputKind::Any);
 
-    /// Appends the available bytes and waits until there are some; false at the end.
+    /// Appends the available bytes, up to 64 KiB, and waits until there are some; false at the end.
+    /// A file that has grown since can be read further.
     bool read(std::string& bytes);
 
   private:
@@ -89,7 +101,9 @@ class OutputFile {
 
     /// \throws std::system_error naming the target, a full disk included
     void write(std::string_view bytes);
-    /// Renames the file to its target. No further writes are allowed.
+    /// Renames the file to its target. No further writes are allowed. \throws std::system_error,
+    /// also for errors of earlier writes that the system reports late; UsageError if the target has
+    /// become an input
     void commit();
     /// Commits files that belong together: all replace their targets or all are discarded. Pass the
     /// file that refers to the others last, so that it never refers to a missing one.
@@ -107,6 +121,7 @@ void mustBeWritable(const std::string& target);
 /// Writes a whole file from memory, as OutputFile does.
 void writeAll(const std::string& target, std::string_view bytes);
 
+/// The bytes of one file of a set.
 struct NamedBytes {
     std::string name;
     std::string_view bytes;

@@ -14,7 +14,12 @@ namespace ispace {
 /// with the same text, and an unclosed bracket matches itself. Case counts.
 ///
 /// Patterns are untrusted: a match takes at most (name bytes) * (1 + pattern bytes / 64) word
-/// operations, however many stars there are.
+/// operations, however many stars there are, as bits of words are the states of an automaton
+/// (R. Baeza-Yates, G. Gonnet, A new approach to text searching, 1992; S. Wu, U. Manber, Fast text
+/// searching allowing errors, 1992). A pattern takes 256 words for each 64 bytes. Thread-safe once
+/// built. Bytes, not characters: `?` matches one byte of UTF-8.
+///
+///     const bool is_hall = Glob("hall-[0-9]*").matches("hall-2-east");  // true
 class Glob {
   public:
     Glob() = default;  ///< matches the empty name

@@ -20,7 +20,10 @@ std::string withoutHistory(std::string_view text);
 /// line number.
 ///
 /// Words that parse entirely as numbers (`-1.5`, `3e-4`; not `5cm` or `a1`) are compared within the
-/// tolerance, all other text byte by byte, blanks included.
+/// tolerance, all other text byte by byte, blanks included. A full stop that ends a word is text.
+/// Stops at the first difference: O(bytes).
+///
+///     textDifference("range 1.0000001 m", "range 1 m", {1e-6, 0});  // "": they agree
 std::string textDifference(std::string_view expected, std::string_view actual, Tolerance tolerance);
 
 }  // namespace ispace

@@ -13,7 +13,9 @@
 
 namespace ispace {
 
-/// Writes compact JSON into a string: keys in the order given, doubles in shortest form.
+/// Writes compact JSON (RFC 8259) into a string: keys in the order given, doubles in the shortest
+/// form that reads back as the same double, so equal values give equal bytes. Nesting is the
+/// caller's: it is not checked, nor are keys twice. Amortised O(1) a byte.
 ///
 ///     JsonWriter json;
 ///     json.beginObject().key("schema").value("x/1").key("area").value(1.5).endObject();
@@ -32,13 +34,16 @@ class JsonWriter {
     JsonWriter& value(float number);
     JsonWriter& value(std::int64_t number);
     JsonWriter& value(int number) { return value(static_cast<std::int64_t>(number)); }
+    /// \pre less than 2^63
     JsonWriter& value(std::size_t number) { return value(static_cast<std::int64_t>(number)); }
     JsonWriter& value(bool flag);
     JsonWriter& null();
+    /// Writes null without a value.
     template <typename T>
     JsonWriter& value(const std::optional<T>& maybe) {
         return maybe ? value(*maybe) : null();
     }
+    /// Writes an array.
     template <typename T>
     JsonWriter& value(const std::vector<T>& list) {
         beginArray();

@@ -20,8 +20,9 @@ std::string printable(std::string_view text);
 std::string excerpt(std::string_view text);
 
 /// Finds the known word that the user most likely meant; "" if all are too different. At most a
-/// third of the letters may differ (insertions, deletions, substitutions and swaps of neighbours);
-/// case is ignored.
+/// third of the letters may differ, or one (insertions, deletions, substitutions and swaps of
+/// neighbours: the optimal string alignment distance); case is ignored. Of equally near words the
+/// first; "" for a word of more than 64 bytes.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& known);
 
 /// Hint to append to a message: ", did you mean `height`?", or "" if no word is near.

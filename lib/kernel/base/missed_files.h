@@ -7,7 +7,13 @@
 namespace ispace {
 
 /// The files that readers of this thread look for in vain while this lives: if one appears later,
-/// they may read it instead of another. Scopes may nest; a name belongs to all of them.
+/// they may read it instead of another. Scopes may nest; a name belongs to all of them. Each thread
+/// has its scopes: readers that start threads lose the names that those look for. A watcher reads
+/// an input again when one of the names appears:
+///
+///     const MissedFiles missed;
+///     const Environment room = readEnvironment("room.env");
+///     watch(missed.names());
 class MissedFiles {
   public:
     MissedFiles();
@@ -23,7 +29,8 @@ class MissedFiles {
     std::set<std::string> names_;
 };
 
-/// Records a file that a search expected, and did not find or may not read.
+/// Records a file that a search expected, and did not find or may not read, in all scopes of this
+/// thread; without one the call has no effect.
 void noteMissed(const std::string& name);
 
 }  // namespace ispace

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers as text, independent of the locale: whole texts parse or fail, values are written in the
+// shortest form that reads back as the same bits. Pure functions, thread-safe.
+//
+// Written doubles of 17 digits take 26 ns by writeDouble(), ranges of a laser 16 ns by writeFloat()
+// (docs/performance.md); the format functions allocate a string besides.
+//
+//     const auto width = parseDouble("1.50");   // 1.5; nullopt for "1.50 m", "nan", "0x1"
+//     const std::string text = formatDouble(0.1 + 0.2);  // 0.30000000000000004
+//     const auto share = parseShare("95%");     // 0.95
 #pragma once
 
 #include <cstddef>
@@ -12,13 +21,14 @@
 namespace ispace {
 
 /// Parses the whole text as a finite number: no blanks, trailing junk, locale, NaN or infinity. A
-/// leading '+' is allowed. Values beyond the range of double return nullopt.
+/// leading '+' is allowed. Values beyond the range of double, too large or too small, return
+/// nullopt. Rounded to the nearest double.
 std::optional<double> parseDouble(std::string_view text);
 
 /// Parses the number times 10^exponent, rounded once: ("30.1", -2) is the double nearest to 0.301.
 std::optional<double> parseScaled(std::string_view text, int exponent);
 
-/// Parses the whole text as a decimal integer.
+/// Parses the whole text as a decimal integer; a leading '+' is allowed. Beyond 64 bits: nullopt.
 std::optional<std::int64_t> parseInteger(std::string_view text);
 
 /// Shortest decimal text that reads back as the same double; plain notation from 1e-5 up to 1e15,
@@ -101,6 +111,9 @@ char* writeNineDecimals(char* to, double value);
 char* writeInteger(char* to, std::size_t value);
 
 /// Appends to a string, which is enlarged once for many numbers and truncated at the end.
+///
+///     TextTail tail(line, ranges.size() * kNumberRoom);
+///     for (const float range : ranges) { tail.put(range); tail.put(' '); }
 class TextTail {
   public:
     /// \pre at most `room` characters are written

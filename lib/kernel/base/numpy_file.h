@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes NumPy's files: .npy (one array) and .npz (named arrays in a ZIP archive).
+// Writes NumPy's files: .npy (one array; NumPy enhancement proposal 1) and .npz (named arrays in a
+// ZIP archive). Streams: neither seeks in its output, so both may go to a pipe. Equal arrays give
+// equal bytes: no time stamps, no compression.
+//
+//     std::string bytes = npyHeader("<f4", std::array<std::uint64_t, 2>{frames, beams});
+//     ZipWriter zip(write);
+//     zip.add("ranges.npy", bytes + values);
+//     zip.finish();
 #pragma once
 
 #include <cstddef>
@@ -13,7 +20,8 @@
 
 namespace ispace {
 
-/// Header of an array file, version 1.0 of the format.
+/// Header of an array file, version 1.0 of the format, padded so that the data are aligned to 64
+/// bytes.
 /// \param type as NumPy writes it: "<f4", "<f8", "|u1" \param shape rows first
 std::string npyHeader(std::string_view type, std::span<const std::uint64_t> shape);
 

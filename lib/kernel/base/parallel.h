@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Values computed once, and loops over TBB that wait safely: a thread that waits for its parts
+// takes up no other task, since its caller may hold a lock (as of Lazy) that such a task requests.
+// No function makes a result depend on the number of threads: parts are given by the caller, and
+// results are taken in order. TBB's own limits (global_control, --threads) hold.
+//
+//     Lazy<CellSet> seen;                                       // shared by many threads
+//     const CellSet& cells = seen.get([&] { return compute(); });
+//     orderedPipeline(frames, [&](std::size_t i) { scans[i % kBlocksAtOnce] = scan(i); },
+//                     [&](std::size_t i) { write(scans[i % kBlocksAtOnce]); });
 #pragma once
 
 #include <atomic>
@@ -21,7 +30,8 @@ class Lazy {
     explicit Lazy(T value) : value_(std::move(value)), is_made_(true) {}
 
     /// Returns the value; `make()` computes it. If `make` throws, the next caller tries again.
-    /// `make` must not request the same value, nor wait for tasks that do.
+    /// `make` must not request the same value, nor wait for tasks that do: loops within it run
+    /// isolated (parallelInvoke() and the like, or tbb::this_task_arena::isolate).
     template <typename Make>
     const T& get(Make make) const {
         if (!is_made_.load(std::memory_order_acquire)) {
@@ -62,11 +72,14 @@ const T& leftToExit(T value) {
 
 /// Calls functions added by several threads in the order of their numbers, one at a time, each as
 /// soon as all earlier ones have been added. The thread that adds the missing function calls those
-/// that wait for it. After an exception no further function is called.
+/// that wait for it. After an exception no further function is called. Amortised O(1) a call; a
+/// waiting function is kept until its turn.
 class OrderedCalls {
   public:
     explicit OrderedCalls(std::size_t count) : waiting_(count) {}
 
+    /// \pre number < count, not added before, and the function is not empty \throws exceptions of
+    /// the functions, on the thread that calls them
     void add(std::size_t number, std::function<void()> call) {
         std::unique_lock lock(mutex_);
         waiting_[number] = std::move(call);
@@ -105,8 +118,10 @@ constexpr std::size_t kBlocksAtOnce = 8;
 void orderedPipeline(std::size_t blocks, const std::function<void(std::size_t)>& make,
                      const std::function<void(std::size_t)>& take);
 
-/// Calls work(first, last) for consecutive ranges of 0 to count - 1, in several threads if
-/// `at_once` and threads are free. \throws the exception of a call
+/// Calls work(first, last) for consecutive ranges [first, last) that cover 0 to count - 1, in
+/// several threads if `at_once` and threads are free, with ranges of some 1024; else once for all.
+/// Ranges depend on the machine, so work must treat each index alike. \throws the exception of a
+/// call
 void parallelChunks(bool at_once, std::size_t count,
                     const std::function<void(std::size_t, std::size_t)>& work);
 

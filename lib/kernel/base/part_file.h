@@ -5,6 +5,16 @@
 // A file of results is a header, see part_head.h, then records. A record is a line `=KEY BYTES
 // HASH`, BYTES bytes and a newline; HASH is hashOf() the bytes, in hex. A later record replaces an
 // earlier one of its key. The last record of a finished part is `end`.
+//
+// After a crash or a full disk only complete records remain: a record that cannot be appended whole
+// is cut off, kept results end before the first damaged record, and damage in a part of a merge is
+// an error. The hash detects damage, not malice. Parts have the same bytes in whatever order
+// results were stored. Results stay on disk: a key takes some 100 bytes of memory, find() one read.
+//
+//     JobResults results("plan.json", job, shard, true);       // --resume
+//     auto tree = results.find("tree1");
+//     if (!tree) results.store("tree1", tree.emplace(grow()));
+//     results.finish();
 #pragma once
 
 #include <chrono>

@@ -38,6 +38,7 @@ struct JobId {
     [[nodiscard]] std::string differenceFrom(const JobId& other) const;
 };
 
+/// The header: the job, and which share of it the file holds.
 struct PartHead {
     JobId job;
     Shard shard;
@@ -46,6 +47,7 @@ struct PartHead {
 /// First line of a header.
 inline constexpr std::string_view kPartMagic = "#part 2\n";
 
+/// Formats a header; parsePartHead() reads it back as the same values.
 std::string partHeadText(const PartHead& head);
 /// Parses a header with its blank line. \throws FormatError with the line and this name of the file
 PartHead parsePartHead(std::string_view text, const std::string& file);

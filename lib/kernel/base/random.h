@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Random numbers by key and index: no generator has a state, so any thread draws any part of any
+// sequence, in any order, and gets the same bits; a sensor that is added changes no other's noise.
+//
+//     std::array<float, 181> noise;
+//     draw({seed, Purpose::Range, hashOf("front"), frame}, 0, {.normal = noise});
+//
+// Method: ten rounds of Philox4x32 (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2,
+// 3, 2011), tested against Random123's known answers; normals by G. E. P. Box, M. E. Muller, A note
+// on the generation of random normal deviates, 1958. The bits are part of our formats: they are the
+// same on every processor, compiler and vector width, and never change. Not for secrets.
 #pragma once
 
 #include <array>
@@ -28,7 +38,9 @@ enum class Purpose : std::uint32_t {
     Storeys = 13
 };
 
-/// A 64-bit hash of an id (FNV-1a), the same on every machine.
+/// A 64-bit hash of an id (FNV-1a by G. Fowler, L. C. Noll, K.-P. Vo), the same on every machine.
+/// One multiplication a byte; collisions of ids are as likely as of random numbers, but easy to
+/// make.
 std::uint64_t hashOf(std::string_view id);
 
 /// Mixes all bits, one to one (SplitMix64; Steele et al., Fast Splittable Pseudorandom Number
@@ -41,8 +53,8 @@ constexpr std::uint64_t mixedBits(std::uint64_t bits) {
 }
 
 /// Key of a sequence of random numbers. Element k depends on the key and k alone, so any thread may
-/// draw any part of it (Philox4x32-10; Salmon et al., Parallel Random Numbers: As Easy as 1, 2, 3,
-/// 2011).
+/// draw any part of it. A sequence has 2^32 elements. Keys that differ in any bit give independent
+/// sequences, except that the upper halves of seed and sensor share 32 bits.
 struct RandomKey {
     std::uint64_t seed = 0;
     Purpose purpose = Purpose::Range;
@@ -52,10 +64,12 @@ struct RandomKey {
 
 /// Elements first, first + 1, ... of a sequence. All arrays have one size; unwanted ones are empty.
 struct RandomDraws {
-    std::span<float> normal = {};   ///< N(0, 1)
+    std::span<float> normal = {};   ///< N(0, 1), within ±6.7
     std::span<float> other = {};    ///< N(0, 1), independent of it
-    std::span<float> uniform = {};  ///< in [0, 1), independent of both
+    std::span<float> uniform = {};  ///< in [0, 1), multiples of 2^-24, independent of both
 };
+/// Computes the elements; those of unwanted arrays change no other. Thread-safe, without
+/// allocation.
 void draw(const RandomKey& key, std::uint32_t first, const RandomDraws& draws);
 
 }  // namespace ispace

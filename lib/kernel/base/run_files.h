@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rules of a run about files: no output replaces an input, no request reads outside of its folders,
+// no signal leaves half a set of files. The guards are global, one at a time per process, and
+// thread-safe.
+//
+//     const FileGuard guard;                   // runTool holds it
+//     const std::string room = readAll("room.env");
+//     OutputFile file("./room.env");           // UsageError: it is an input
 #pragma once
 
 #include <csignal>

@@ -7,7 +7,9 @@
 namespace ispace {
 
 /// One of `count` shares of a job, numbered from 1: "3/8". Its work depends only on these two
-/// numbers and the units of the job.
+/// numbers and the units of the job, so shards run on any machines, in any order, and again.
+///
+///     parseShard("3/8").blockOf(100);  // {26, 39}: 13 units, as in the first four shards
 struct Shard {
     int index = 1, count = 1;
 

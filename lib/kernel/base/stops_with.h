@@ -8,10 +8,14 @@
 
 namespace ispace {
 
-/// Shows no progress, and says stop when another one does: of searches within a search.
+/// Shows no progress, and says stop when another one does: of searches within a search, which count
+/// other units than the whole. Thread-safe as stopped() of the other is.
+///
+///     StopsWith inner(progress);
+///     const auto best = improve(start, inner);  // returns early after a signal
 class StopsWith final : public Progress {
   public:
-    /// Stores the reference.
+    /// Stores the reference. \pre `whole` outlives this
     explicit StopsWith(const Progress& whole) : whole_(whole) {}
     void begin(std::string_view /*phase*/, std::int64_t /*total*/) override {}
     void advance(std::int64_t /*count*/) override {}

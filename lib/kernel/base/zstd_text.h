@@ -12,9 +12,9 @@ namespace ispace {
 /// Ends the names of files that zstd has compressed.
 constexpr std::string_view kZstdSuffix = ".zst";
 
-/// Compresses a growing text as one zstd frame, at zstd's default level: the same pieces give the
-/// same bytes. Later pieces refer to earlier ones, so that small pieces compress nearly as well as
-/// the whole. Holds some 1.5 MB.
+/// Compresses a growing text as one zstd frame (RFC 8878), at zstd's default level: the same pieces
+/// give the same bytes with one version of the library. Later pieces refer to earlier ones, so that
+/// small pieces compress nearly as well as the whole. Holds some 1.5 MB.
 class ZstdPacker {
   public:
     /// \throws std::bad_alloc
