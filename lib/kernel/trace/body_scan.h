@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Intersects single rays, level scans and pictures with moving bodies. Private to MovingBodies.
+//
+// All by one exact test (BodyFrame), behind bounds that only skip: cones, boxes of pixels and
+// angles of beams are wider than rounding (kAngularSlack is three times the error of angleOf(), a
+// pixel's slack 1e-3), so that a bound never changes a range. Each keeps the nearer of the range so
+// far and the body; the order of bodies does not matter.
 #pragma once
 
 #include <algorithm>

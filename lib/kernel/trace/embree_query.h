@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Embree's queries with intersections in doubles. Private to lib/kernel/trace and its render.
+//
+// A packet holds 16 rays in doubles. Embree searches its tree in float32 and returns the surface of
+// each ray; planes are then met in doubles, all lanes of the packet in one loop. A ray close to an
+// edge, or to a surface at its origin, takes the exact test: one ray after another, through a
+// filter that skips ignored surfaces. Supports Embree 3 and 4, which differ in how a query is
+// passed.
+//
+// One query object per thread. Results of a lane depend on its ray alone, except near edges, where
+// Embree's choice of two triangles may depend on the packet (see EmbreeScene).
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)

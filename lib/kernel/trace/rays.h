@@ -12,10 +12,10 @@
 
 namespace ispace {
 
-/// Range of a ray without return.
+/// Range of a ray without return: never 0 or the maximum range.
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
-/// A ray up to `reach` times its direction.
+/// A ray up to `reach` times its direction, both ends included.
 struct Ray {
     Point3 origin;
     Vec3 direction;
@@ -33,7 +33,11 @@ struct RayHit {
     }
 };
 
-/// Unit vectors, one array per component.
+/// Unit vectors, one array per component, so that loops over rays are vectorised. Unit up to
+/// rounding: ranges are multiples of the vectors given. Fastest if neighbours point in similar
+/// directions.
+///
+/// \pre x, y and z have one size
 struct Directions {
     /// Level rays at equal steps: number k points along bearing first + k * step, in the world.
     struct Arc {
@@ -47,6 +51,7 @@ struct Directions {
     std::optional<Arc> arc = {};
 
     [[nodiscard]] std::size_t size() const { return x.size(); }
+    /// New elements are null vectors, to be set.
     void resize(std::size_t count) {
         x.resize(count);
         y.resize(count);
@@ -61,7 +66,9 @@ struct Directions {
 };
 
 /// The rays of a picture through one origin: pixel (column, row) has direction corner + column *
-/// right + row * down, not necessarily of unit length.
+/// right + row * down, not necessarily of unit length. Results are row by row, and depths multiples
+/// of these directions: with corner, right and down on the plane one metre ahead they are depths
+/// along the axis.
 struct RayGrid {
     Vec3 corner, right, down;
     int columns = 0, rows = 0;

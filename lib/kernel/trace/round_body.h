@@ -6,6 +6,11 @@
 // bodies are circles and balls, which RayInterval clips in metres. RoundFrom of FlatWorld computes
 // the inverse of the nearest range alone, as its scans keep the largest. These three forms round
 // differently: one form for all would change the last bits of ranges.
+//
+// The discriminant is a r^2 - (q x d)^2, by the cross product of origin and direction, instead of
+// b^2 - a c: far bodies lose no digits to the cancellation of two large squares. Roots are c / far
+// and far / a, so that neither cancels. Errors are some ulp of the range, times the range over the
+// radius at grazing rays. Closed sets: a ray that touches meets.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +31,7 @@ struct RayInterval {
     double exit = std::numeric_limits<double>::infinity();
     double enter_slope = 0, exit_slope = 0;
 
+    /// Intersects with [near, far]; of equal ends the slope stays.
     void cut(double near, double far, double slope_near, double slope_far) {
         if (near > enter) {
             enter = near;
@@ -36,6 +42,7 @@ struct RayInterval {
             exit_slope = slope_far;
         }
     }
+    /// Makes it empty: enter above exit.
     void clear() {
         enter = std::numeric_limits<double>::infinity();
         exit = -enter;
@@ -69,6 +76,7 @@ struct RayInterval {
             cut(near, far, slope(near), slope(far));
         }
     }
+    /// Clips by a ball about the origin of the frame.
     void cutBall(Vec3 origin, Vec3 direction, double radius) {
         const double a = dot(direction, direction), b = dot(origin, direction);
         const Vec3 side = cross(origin, direction);

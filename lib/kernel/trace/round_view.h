@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Intersects round bodies with packets of rays, for Embree. Private to lib/kernel/trace.
+//
+// The values that all rays of an origin share are computed once, and the lanes of a packet in one
+// loop without branches. Cases of upright rays, of origins near or in the body and of several
+// origins are left to meetRound(), so the two agree to the last bit (round_view_test).
 #pragma once
 
 #include <array>

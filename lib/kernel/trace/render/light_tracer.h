@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/kernel/trace/render: light at surface points, sixteen at a time.
+//
+// Monte Carlo over lamps (or the sun) and one direction of bounced light a sample. The sixteen
+// pixels of a tile take the sixteen points of one net (I. M. Sobol, On the distribution of points
+// in a cube, 1967), shuffled so that neighbours lie far apart (A. Keller, W. Heidrich, Interleaved
+// sampling, 2001): the mean over any 4 x 4 pixels is that of a stratified sample, which
+// LightField::smooth() takes. Light in float32: noise is far above rounding.
 #pragma once
 
 #include <array>

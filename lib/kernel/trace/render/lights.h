@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/kernel/trace/render: lamps, sky, and the light of a picture before it is smoothed.
+//
+// Radiance is relative: 1 is a white surface in the light of the whole room. Light is smoothed by
+// an edge-avoiding a-trous filter (H. Dammertz et al., Edge-avoiding a-trous wavelet transform for
+// fast global illumination filtering, 2010) over pixels of one surface: normals within acos 0.9,
+// heights within 3 mm and 0.2 % of the depth.
 #pragma once
 
 #include <array>

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/trace/render: renders lit pictures of a scene. Uses trace and below; Embree inside.
+//
+// Labels and depths are measurements: the first surface at each pixel's centre, exact as rays are
+// (embree_scene.h). Colours are for eyes: light of lamps or sun with soft shadows, one bounce
+// estimated from nearby surfaces, samples smoothed but never across edges. Bytes are the same for
+// any number of threads and for bands; random numbers are keyed by pixel and seed.
+//
+//     const RenderScene scene(readScene("room.3dm"));
+//     const Rendering picture = render(scene, CameraView(camera, pose), {.samples = 9});
+//     const std::vector<std::uint8_t> bytes = toSrgb8(picture);
 #pragma once
 
 #include <array>
@@ -17,7 +26,7 @@
 
 namespace ispace {
 
-/// Red, green and blue, linear.
+/// Red, green and blue, linear, with the primaries of sRGB; not limited to 1.
 using Rgb = std::array<float, 3>;
 
 /// A surface for pictures only, in world coordinates: visible from both sides, without shadow,
@@ -29,6 +38,7 @@ struct PaintedMesh {
     bool is_lit = true;  ///< false: keeps its colour in light and shade, as signs do
 };
 
+/// Contents of a scene to render, besides its environment.
 struct RenderSceneOptions {
     /// Level plates of Material::Ceiling; without them a room can be seen from above.
     bool ceilings = true;
@@ -55,6 +65,7 @@ enum class Illumination {
     Sky,    ///< the sun, half-way up in the south-west, and a clear sky
 };
 
+/// Quality and products of one picture. The defaults suit screens.
 struct RenderOptions {
     /// Lines of sight per pixel: smooth edges. Light follows: more samples, less noise.
     int samples = 4;
@@ -121,7 +132,7 @@ std::vector<std::string> textureFiles(const Scene& scene);
 std::vector<std::size_t> ownRecords(const Scene& scene, const Sensor& sensor);
 
 /// Converts to red, green and blue bytes for screens and files: radiance times exposure, highlights
-/// rolled off softly, in sRGB.
+/// rolled off softly, in sRGB (IEC 61966-2-1). Three bytes a pixel, row by row.
 std::vector<std::uint8_t> toSrgb8(const Rendering& picture, double exposure = 1);
 /// Converts one colour, without the roll-off.
 std::array<std::uint8_t, 3> toSrgb8(const Rgb& color);

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/kernel/trace/render: the data of a RenderScene. Static surfaces are built once and
+// shared by all scenes that at() returns; movable bodies are built for each. Coordinates are
+// relative to the middle of the plan, so that float32 resolves micrometres. Immutable once built,
+// thread-safe.
 #pragma once
 
 #include <cstddef>

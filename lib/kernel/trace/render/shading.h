@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/kernel/trace/render: lines of sight in tiles of 4 x 4 pixels, the surfaces they
+// meet, and their colours. Depths are computed in doubles as those of EmbreeScene, and do not
+// depend on tiles, samples or threads. One tracer per thread; Shading is const and shared.
 #pragma once
 
 #include <array>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/kernel/trace/render: pictures on surfaces. Files are decoded by the confined
+// reader of pictures, since they may come with a room from elsewhere; all textures of a scene share
+// one bound of pixels.
 #pragma once
 
 #include <cstdint>
