@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Faces that cameras see from ahead, and zones that they must not see.
+//
+// Both are areas of overlays of the cameras' exact regions, in which a set of points that face a
+// camera is a wedge: apex at the camera, sides at the rule's angle. Views are cut to the box of a
+// zone first, since the lattice of an overlay grows with its extent. O(n log n) for each zone in
+// the edges there.
+//
+//     const FacingRule rule = parseFacing("entrance,45deg,180=90%");
+//     for (const FacingResult& result : measureFacing(scene, coverage, {&rule, 1}))
+//         if (!isMet(result)) unmet.push_back(result.rule.zone);
 #pragma once
 
 #include <optional>
@@ -65,12 +74,14 @@ std::vector<std::string> privateZones(const PrivacyRule& rule, const Environment
 /// Parses `zone:desk*`, `desk*,recognise` and `desk*,125`. \throws UsageError
 PrivacyRule parsePrivacy(std::string_view text);
 
+/// A rule of facing and the share of its zone that meets it.
 struct FacingResult {
     FacingRule rule;
     double area = 0;                   ///< of the indoor part of the zone, m2
     std::optional<double> share = {};  ///< of that, seen from ahead; empty if a region is unknown
 };
 
+/// A zone of a rule of privacy and the floor of it that cameras see.
 struct PrivacyResult {
     std::string zone;
     double density = 0;

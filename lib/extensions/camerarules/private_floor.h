@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rules of privacy for searches, which ask for thousands of single cameras.
+//
+//     PrivateFloor floor(environment, 1.2, rules);
+//     const bool is_allowed = floor.knownSight(sensor).broken == 0;
 #pragma once
 
 #include <cstddef>
@@ -15,7 +19,7 @@ namespace ispace::camerarules {
 
 /// Measures the private floor that single cameras see in one environment, as measurePrivacy() of a
 /// scene with that camera alone, within rounding. Finds the floor of each zone once, and looks only
-/// at zones that the box about a view meets.
+/// at zones that the box about a view meets. seenBy() is thread-safe, knownSight() is not.
 class PrivateFloor {
   public:
     /// \throws UsageError for a glob that matches no zone

@@ -16,7 +16,13 @@
 namespace ispace {
 
 /// The bodies by which two environments with the same walls differ, each as an upright box: a view
-/// over a plane changes only in their shadows.
+/// over a plane changes only in their shadows. Boxes hold bodies, so no cell that changes is
+/// missed; others may be tested for no change. An edit then costs rays in these shadows instead of
+/// a whole view.
+///
+///     if (const auto changed = ChangedBodies::between(before, after))
+///         const CellChanges cells = changesIn(changed->shadowsOn(grid, eye, 0), grid, mesh, view,
+///         0, seen);
 class ChangedBodies {
   public:
     /// Empty unless Environment::changesSince() compares the two.

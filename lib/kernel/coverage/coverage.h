@@ -1,5 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/coverage: cells, areas and coverage of sensors. Uses sense and below; TBB inside.
+//
+// Each figure is known twice where it can be: in closed form by an overlay of the views' exact
+// regions (the reference; error bounds of geom/overlay/overlay.h, some 1e-7 of an area), and by
+// cells of a grid with their centre in view (the thesis' way; error of the order of a cell's edge
+// times the boundary). coverage_exact_test checks that cells converge to the closed form.
+//
+// Figures and bytes are the same for any number of threads. Costs: the whole program takes 20 ms
+// with three sensors in a room; views run in parallel, a union of a hundred views takes 3 ms.
+//
+//     RayScenes worlds(scene.environment);
+//     const Coverage coverage = measureCoverage(scene, worlds, {.plane = 1.2});
+//     const Metric share = coverage.report.coverage;  // of the indoor floor
+//     const double covered = share.exact.value_or(share.grid.value_or(0));
 #pragma once
 
 #include <cstdint>
@@ -32,6 +45,7 @@ struct ParallaxChoice {
     int cameras = 2;
 };
 
+/// Plane, cells and products of a measurement. Metres.
 struct CoverageOptions {
     CellChoice cells = RoomCells();
     double height = kScanHeight;  ///< height at which the free floor is computed
@@ -68,6 +82,7 @@ struct PictureMetrics {
     Metric mean_density = {};  ///< mean over the covered area, pixels a metre
 };
 
+/// Metrics of one sensor, alone and beside the others.
 struct SensorMetrics {
     std::string id, model;  ///< model is "" for a sensor without one
     const SensorKind* kind = &Laser::kKind;
@@ -80,6 +95,7 @@ struct SensorMetrics {
     std::optional<PictureMetrics> picture = {};  ///< of cameras
 };
 
+/// Metrics of one zone of the room.
 struct ZoneMetrics {
     std::string id;
     double area = 0;                     ///< of its indoor part, exact, m2

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/kernel/coverage: the floor on which a lens that is not even has enough pixels a
 // metre.
+//
+// A level set (level_set.h) of pixels a radian over the density less the distance, which is 0 at
+// the density and has no pole at the camera. Bounds by interval arithmetic skip boxes of one sign,
+// so that the lens model is evaluated near the boundary alone. Arcs lie within kConicError of it.
 #pragma once
 
 #include <optional>

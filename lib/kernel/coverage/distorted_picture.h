@@ -9,7 +9,11 @@
 
 namespace ispace {
 
-/// The picture of a pinhole with distortion, in its plane at depth 1.
+/// The picture of a pinhole with distortion (the model of D. C. Brown, Decentering distortion of
+/// lenses, 1966, as OpenCV has it), in its plane at depth 1. Bounds whole boxes of that plane by
+/// interval arithmetic: a box with margin above 0 lies in the picture, one below 0 outside, others
+/// are split or tested point by point. Bounds are wider than the truth, never narrower but for
+/// rounding. O(1)
 class DistortedPicture {
   public:
     explicit DistortedPicture(const Camera& camera)

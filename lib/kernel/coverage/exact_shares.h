@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of measureCoverage() for searches that measure many layouts of one room: the shares alone,
+// and the change from a layout that was measured. Both return the values of the whole; they save
+// cells, and the views of sensors that stay.
+//
+//     const Coverage after = measureChanged(scene, worlds, options, {&before_scene, &before});
 #pragma once
 
 #include <optional>

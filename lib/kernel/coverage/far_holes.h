@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/kernel/coverage.
+// Private to lib/kernel/coverage: holes of the floor that an overlay of views need not see. Areas
+// and pieces are those of the whole overlay. O(n log n) in the edges of the floor, once for a room;
+// then O(far holes) for each set of views.
 #pragma once
 
 #include <span>

@@ -13,7 +13,11 @@
 namespace ispace {
 
 /// Fields of view of one sensor at one position, tested together: bit k of a word stands for view
-/// k.
+/// k. Answers are those of FieldOfView::holds() for each, always: tables and interval bounds only
+/// decide sure cases, the rest asks the lens model. Const members are thread-safe.
+///
+///     const HeldViews held(views);
+///     const std::uint64_t in_view = held.holding(place, held.all());
 class HeldViews {
   public:
     static constexpr std::size_t kMax = 64;  ///< views, one for each bit

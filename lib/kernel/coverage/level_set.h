@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/kernel/coverage: the area where a smooth function of a plane is at least 0.
+//
+// Marching squares (the plane's case of W. E. Lorensen, H. E. Cline, Marching cubes, 1987) over a
+// grid of samples; roots on the sides of cells to 1e-10 m by regula falsi in its Illinois variant
+// (M. Dowell, P. Jarratt, A modified regula falsi method for computing the root of an equation,
+// 1971); roots are joined by arcs within kConicError of the boundary. O(side^2) samples, with
+// bounds those near the boundary alone.
+//
+//     const auto disc = levelSet([](Point2 p) { return 1 - dot(p - Point2(), p - Point2()); },
+//                                {{-2, -2}, {2, 2}});
 #pragma once
 
 #include <functional>

@@ -29,6 +29,7 @@ struct Zone {
     std::string id;
     Polygon outline;
 };
+/// Returns the zones in the order of their records.
 std::vector<Zone> zonesOf(const Environment& environment);
 /// Zones take the bits from here on; further zones require further passes.
 constexpr std::size_t kFirstZoneBit = 2, kZonesAtOnce = 62;

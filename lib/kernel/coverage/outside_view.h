@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Views into a room from a sensor beside it: through doors of walls that rooms share, down from a
+// gallery. They are computed once, with the bodies of both rooms, in the frame of the room that is
+// seen, and then measured like the views of the room's own sensors.
 #pragma once
 
 #include <functional>

@@ -13,6 +13,14 @@ namespace ispace {
 /// Decides for nearly all directions whether they are in the picture of a lens that distorts by the
 /// angle to the axis alone, without evaluating the lens model: reads the position in the picture
 /// from a table over the cosine of that angle.
+///
+/// 256 steps, linear between. The error of each step is measured at its middle; eight times the
+/// largest, plus 1e-9 focal lengths, is the margin about the picture's edge within which directions
+/// are Unsure, for the caller to ask the lens model. Building evaluates the model 513 times;
+/// locate() takes no trigonometry. Immutable, thread-safe.
+///
+///     const PictureTable table(camera);
+///     const auto answer = table.locate(local, length(local));  // in the camera's frame
 class PictureTable {
   public:
     enum class Answer { Outside, Inside, Unsure };

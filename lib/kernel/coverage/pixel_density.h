@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/kernel/coverage: metrics of cameras on a plane, one by one and together.
+//
+// Pixels a metre at a point are pixels a radian of the lens there over the distance; for a straight
+// pinhole focal length over depth. The floor with at least a density is then a half plane, for an
+// equidistant fisheye a disc, both exact; other lenses are traced (dense_floor.h).
 #pragma once
 
 #include <optional>

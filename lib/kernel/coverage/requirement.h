@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Requirements of coverage as users state them, and their check against a report.
+//
+//     const Requirement wanted = parseRequirement("zone:entrance=95%");
+//     mustHaveZone(wanted, scene.environment);
+//     const Verdict verdict = checkRequirement(wanted, coverage);
+//     if (!verdict.is_met) throw UnmetError(verdict.text);
 #pragma once
 
 #include <cstddef>

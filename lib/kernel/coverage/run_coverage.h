@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Coverage of recorded motion: the sensors that saw each robot and person, moment by moment.
+//
+//     const RunCoverage run = measureRun(start, reader, {});
+//     const double unseen = run.all.time_shares[0];  // share of the time that no sensor saw one
 #pragma once
 
 #include <cstddef>

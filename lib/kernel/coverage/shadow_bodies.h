@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies as casters of shadows on a level plane: central projections from a sensor, in doubles,
+// which an overlay unites (shadow_footprint.h). Most bodies near a sensor indoors lie in the shadow
+// of a wall and are skipped. Order and bytes depend on environment and sensor alone.
 #pragma once
 
 #include <array>

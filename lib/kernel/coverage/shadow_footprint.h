@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Fields of view and shadows on a level plane, and the region that is in view and in no shadow.
+//
+//     const ShadowCaster caster(environment);
+//     if (const auto region = caster.regionSeen(camera, 0.0))  // disjoint curves
+//         area = signedArea(*region);
 #pragma once
 
 #include <algorithm>
@@ -20,7 +25,9 @@ namespace ispace {
 constexpr double kConicError = kChordError / 100;
 
 /// Appends arcs along a smooth curve from place(begin) to place(end); they begin where the edges of
-/// `curve` end. O(1 / error^(1/3))
+/// `curve` end. A piece is halved until the curve's points at its quarters lie within kConicError
+/// of the arc through its ends and middle; 16 times at most. O(1 / error^(1/3)): an arc through
+/// three points errs by the cube of its length.
 template <typename Place>
 void follow(Place place, double begin, double end, Curve& curve);
 

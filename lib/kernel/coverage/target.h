@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The floor to be covered: cells over the limits of a room, and their weights.
+//
+//     const Target target = makeTarget(scene.environment, RoomCells(), kScanHeight);
+//     const double share = double(target.indoor.count()) / double(target.grid.size());
 #pragma once
 
 #include <string>

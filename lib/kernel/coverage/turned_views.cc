@@ -61,7 +61,7 @@ ISPACE_INLINE float angleOf(float x, float y) {
     const float ax = std::fabs(x), ay = std::fabs(y);
     const float z = std::min(ax, ay) / (std::max(ax, ay) + std::numeric_limits<float>::min());
     const float s = z * z;
-    // Abramowitz and Stegun, 4.4.49.
+    // Abramowitz and Stegun, 4.4.47.
     float t = z * (0.9998660F +
                    s * (-0.3302995F + s * (0.1801410F + s * (-0.0851330F + s * 0.0208351F))));
     t = ay > ax ? kPi / 2 - t : t;

@@ -16,6 +16,10 @@ namespace ispace {
 /// The views of one sensor at several headings over a level plane, in polar coordinates about its
 /// foot: for all points of a ring and a sector, the views that hold them, and those that may. The
 /// table is that of all sites at which the sensor has this height, tilt and roll.
+///
+/// 192 rings by 1024 sectors, two bytes each. A bin is decided with a margin of 2 % of its size,
+/// more than the float32 errors of find() (2e-5 rad), so a sure verdict holds for each point of it;
+/// points of unsure bins are tested by HeldViews. Immutable, thread-safe.
 class TurnedViews {
   public:
     /// Builds the table in milliseconds. \param ahead the view at heading 0

@@ -18,12 +18,15 @@
 
 namespace ispace {
 
+struct KnownSight;
+
 /// Computes the visible area of single sensors: for a laser that scans a slice in that slice, for
 /// any other sensor on one level plane (see ShadowCaster). A sensor inside a solid, deeper than
 /// kRayEpsilon, sees no floor.
 ///
-struct KnownSight;
-
+///     VisibleArea sight(scene.environment, 0.0);
+///     if (const auto region = sight.regionOf(sensor)) area = signedArea(*region);
+///
 /// The exact region is the reference; cells count if their centre lies in it, rasterised
 /// (cellsBySector) for slices and tested one by one (cellsOnPlane) for planes. The edges of a field
 /// of view and the maximum range count as inside, an occluding line does not.
