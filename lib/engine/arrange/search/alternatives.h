@@ -20,12 +20,16 @@ bool differs(const Solution& solution, const Solution& other, const NearChoices&
 /// Finds up to `count` further solutions, the best first: each differs from `best` and from those
 /// before it, which differ from it in a sensor of theirs.
 ///
-/// Splits the solutions as Lawler (1972) does for the K best: one differs from another if, for some
+/// Splits the solutions as E. L. Lawler does for the K best (A procedure for computing the K best
+/// solutions to discrete optimization problems, 1972): one differs from another if, for some
 /// sensor of that, it has none near it, so a search without the candidates near each sensor in turn
 /// finds the best that differs, and each solution found is split further. With Optimizer::Exact no
 /// solution that differs from all before has a larger value, unless a kind has no candidate left
 /// in a part of the split, which is skipped. Runs one search for each sensor of each solution, and
 /// again where a solution repeats an earlier one. Returns those found if progress says stop.
+/// Deterministic for any number of threads otherwise.
+///
+///     const auto others = alternativesTo(problem, result.best, are_near, 3, options, progress);
 std::vector<Solution> alternativesTo(const Problem& problem, const Solution& best,
                                      const NearChoices& are_near, std::size_t count,
                                      const SearchOptions& options, Progress& progress);

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The search tree of Exact: branch and bound (A. H. Land, A. G. Doig, An automatic method of
+// solving discrete programming problems, 1960) with Lagrangian bounds (relaxation.h) in place of
+// linear programs.
+//
+// Nodes are taken in batches that do not depend on the number of threads, processed in parallel,
+// and their results are taken in order: the tree is the same for any number of threads. Memory is
+// that of the open nodes, at most about max_bytes. Time is exponential at worst.
+//
+//     const Bound bound = lagrangianBound(problem, best.chosen, {.cut = best.value}, progress);
+//     const SearchResult exact =
+//         branchAndBound(problem, bound, {best, bound.value}, 0, progress);  // value == bound
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/arrange/search: nodes of the search tree, their reduced problems and
 // bounds.
+//
+// Bounds are in fine units (RelaxedCells), whole numbers that round up, so that a node is closed
+// only if no better solution is in it. Nodes share problems, lists and multipliers, which never
+// change.
 #pragma once
 
 #include <algorithm>
@@ -86,8 +90,8 @@ struct SplitNode {
 
 /// Branches on a node: splits the list of one group into candidates with views similar to a pivot's
 /// and the rest, with one child for each number of sensors from the first part. Strong branching
-/// (Applegate, Bixby, Chvatal & Cook 1995) selects the split with children that promise the
-/// smallest tree after a few steps of the bounds of their core.
+/// (D. Applegate, R. Bixby, V. Chvatal, W. Cook, Finding cuts in the TSP, 1995) selects the split
+/// with children that promise the smallest tree after a few steps of the bounds of their core.
 ///
 /// Deterministic, unless progress says stop: then returns an arbitrary split.
 /// \param relaxed of the node before it was cut down, the same groups and lists, with the

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The values of a layout in the cases of a WorstCaseProblem.
+// The values of a layout in the cases of a WorstCaseProblem. Whole numbers, exact. Failures are
+// judged by the distinct sets of sensors that see floor, of which there are far fewer than cells.
+//
+//     const CaseValues values(of, solution.chosen);
+//     const CaseValue worst = values.worst();
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inside lib/engine/arrange/search: set cover problems by rows and by columns.
+// Inside lib/engine/arrange/search: set cover problems by rows and by columns, and their bounds.
+//
+// Costs and prices are multiples of 2^-20 below 2^31, so doubles hold all their sums exactly: a
+// bound needs no tolerance. Reductions keep at least one optimal cover, not all of them.
 #pragma once
 
 #include <cstdint>
@@ -67,11 +70,12 @@ struct PriceRounds {
 /// Raises core.price by subgradients; ends once no cover below `limit` (of the core's rows) exists.
 CoverBound raisePrices(CoverCore& core, double limit, const PriceRounds& how);
 
-/// Bounds a core by its linear program with Chvatal-Gomory cuts: rows of whole numbers that follow
-/// from sums of rows. Prices and multipliers are multiples of 2^-20, so the bound holds in spite of
-/// rounding. For cores of which raisePrices() leaves a gap: slower, and far stronger. Ends early
-/// once a quarter of the columns are excluded.
-/// \return the bound; value 0 if the core is too large. If progress says stop, that so far
+/// Bounds a core by its linear program with Chvatal-Gomory cuts (V. Chvatal, Edmonds polytopes and
+/// a hierarchy of combinatorial problems, 1973): rows of whole numbers that follow from sums of
+/// rows. Prices and multipliers are multiples of 2^-20, so the bound holds in spite of rounding.
+/// For cores of which raisePrices() leaves a gap: slower, and far stronger. Ends early once a
+/// quarter of the columns are excluded. \return the bound; value 0 if the core is too large. If
+/// progress says stop, that so far
 CoverBound raiseByCuts(const CoverCore& core, double limit, const Progress& progress);
 
 /// Finds columns that symmetries of the core map to each other: for each a column of its orbit, the

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/arrange/search: weighted coverage problems, their solutions and bounds. Uses base
 // alone; TBB inside.
+//
+// The folder knows cells, weights and candidates, and no geometry. All values and bounds are whole
+// numbers: sums are exact, bounds hold without slack for rounding, and results are the same for any
+// number of threads, unless a search is stopped. Read problem.h next, then search.h.
+//
+//     CandidateSet candidates(6);                     // six cells
+//     CellSet left(6), right(6);
+//     for (std::size_t cell : {0, 1, 2}) left.set(cell);
+//     for (std::size_t cell : {2, 3}) right.set(cell);
+//     candidates.addSite(left);
+//     candidates.addSite(right);
+//     Problem problem;
+//     problem.weights = {1, 2, 4, 8, 16, 32};
+//     problem.kinds = {{&candidates, 2}};             // at most two sensors
+//     SilentProgress progress;
+//     const SearchResult result = search(problem, {}, progress);  // both: value 15, bound 15
 #pragma once
 
 #include <algorithm>
@@ -13,8 +29,8 @@
 
 namespace ispace {
 
-/// Prefix sums of cell weights: the weight of a run takes two reads. Sums wrap around at 2^32; only
-/// the weights of runs and candidates have to fit.
+/// Prefix sums of cell weights: the weight of a run takes two reads, whatever its length. Sums wrap
+/// around at 2^32; only the weights of runs and candidates have to fit. Thread-safe once assigned.
 class WeightSums {
   public:
     WeightSums() = default;
@@ -38,7 +54,8 @@ bool isWhole(const CellParts& parts, std::size_t cells);
 ///
 /// Candidates of one site share storage: the cells visible from the site are split into parts by
 /// direction, and each candidate is a range of parts. This takes 4 bytes per run and part and 12
-/// per candidate, a fraction of a bit set each.
+/// per candidate, a fraction of a bit set each. To weigh all candidates of a site takes its runs
+/// once: about two cycles a run for 13 000 sites of 780 runs. Const members are thread-safe.
 class CandidateSet {
   public:
     /// The parts that a candidate sees: `count` directed parts from `begin` on, wrapping around,

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // State and candidate finder of greedy and local search.
+//
+// A state keeps the multiplicity of each cell, so that a sensor is added or removed in the time of
+// its runs, and the gain of every candidate follows from one prefix sum of the cells' gains. The
+// finder weighs few sites: gains never grow as sensors are added, so an old gain bounds a new one.
 #pragma once
 
 #include <cstddef>
@@ -104,7 +108,8 @@ struct CandidateGains {
 };
 
 /// Finds the best candidate by lazy evaluation: visits sites in descending order of an upper bound
-/// until no bound exceeds the best gain (Minoux 1978). Reuses its memory; not thread-safe.
+/// until no bound exceeds the best gain (M. Minoux, 1978, see search.h). Reuses its memory; not
+/// thread-safe.
 class CandidateFinder {
   public:
     /// Finds the best candidate that `allows` accepts (null: any), the first among equals; once

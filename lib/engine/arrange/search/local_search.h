@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Local search: one sensor moves at a time, from several starts, and from disturbed solutions.
+//
+// Ends at a local optimum of single moves, without a guarantee; bounds tell the gap.
+// Starts run in parallel, share best responses by a cache, and give the same result in any order:
+// of equal solutions that of the first start counts.
+//
+//     const Solution better = iteratedLocalSearch(problem, solution, {.seed = 1}, progress);
 #pragma once
 
 #include <cstddef>
@@ -99,6 +106,7 @@ class LocalSearch {
     WeightSums sums_, more_sums_;
 };
 
+/// Length of an iterated local search.
 struct KickOptions {
     std::uint64_t seed = 0;
     int rounds = 40;   ///< at most
@@ -108,11 +116,10 @@ struct KickOptions {
 };
 
 /// Improves a good solution: removes a few sensors with similar views, inserts others, and moves
-/// all to a local optimum, again and again (iterated local search; Lourenço, Martin & Stützle
-/// 2003). Chains run side by side for a round of a dozen kicks each, from the best so far. Returns
-/// a solution never worse than `start`. Deterministic for any number of threads unless progress
-/// says stop.
-/// \pre start is feasible
+/// all to a local optimum, again and again (H. R. Lourenço, O. C. Martin, T. Stützle, Iterated
+/// local search, 2003). Chains run side by side for a round of a dozen kicks each, from the best so
+/// far. Returns a solution never worse than `start`. Deterministic for any number of threads unless
+/// progress says stop. \pre start is feasible
 Solution iteratedLocalSearch(const Problem& problem, const Solution& start,
                              const KickOptions& options, Progress& progress);
 

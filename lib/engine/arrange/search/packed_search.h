@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/arrange/search: writes and reads the job results of a search.
+// Private to lib/engine/arrange/search: writes and reads the job results of a search, by
+// base/packed.h. Results are those of the same version (part_head.h), and are checked nevertheless:
+// choices that the problem does not have, and values that its solutions do not have, are errors.
 #pragma once
 
 #include <cstdint>

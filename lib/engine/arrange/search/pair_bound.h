@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/arrange/search: the relaxation of overlapBound().
+// Private to lib/engine/arrange/search: overlapBound() and its relaxation. Closes part of the gap
+// that lagrangianBound() leaves where many views overlap in pairs, at several times its cost;
+// search() takes it for six sensors or more, if more than 0.5 % remains.
 #pragma once
 
 #include <algorithm>
@@ -127,7 +129,8 @@ class OverlapRelaxation {
 /// that sees it, so fractions of neighbours combine as no whole sensors can. Here candidates are
 /// split into areas, one about each sensor of a good solution, and a spanning tree joins the areas.
 /// The common cells of the first sensors of two joined areas are subtracted: of c sensors that see
-/// a cell at most c - 1 pairs are edges, so it still counts at least once (Hunter 1976). Within an
+/// a cell at most c - 1 pairs are edges, so it still counts at least once
+/// (D. Hunter, An upper bound for the probability of a union, 1976). Within an
 /// area two sensors are exact, and more of them at most see the union of its worthwhile views. The
 /// number of sensors has a separate multiplier. A pass from the leaves of the tree to its root
 /// finds the best choice for given multipliers exactly.

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The problem that arranging sensors comes down to: maximum coverage with weights, kinds, a budget,
+// multiple coverage and connection. NP-hard already for one kind (R. M. Karp, Reducibility among
+// combinatorial problems, 1972, for set cover); search.h has the methods and their guarantees.
+//
+// Functions here define the values that searches maximise; problem_test compares them with a loop
+// over cells. Pure functions, thread-safe. cover_sets.h has an example.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lagrangian upper bounds. The rows that tie cells to sensors are priced (M. L. Fisher, The
+// Lagrangian relaxation method for solving integer programming problems, 1981): with prices fixed,
+// the best sensors are those of the largest reduced costs. Any prices give a valid bound; the best
+// ones give that of the linear program. Prices are whole fractions of weights and round up, so
+// bounds are exact whole numbers. One evaluation takes O(runs) at worst, far less by working sets.
+//
+//     const Bound bound = lagrangianBound(problem, best.chosen, {.cut = best.value}, progress);
+//     // no feasible solution has more than bound.value
 #pragma once
 
 #include <cstdint>
@@ -110,9 +118,10 @@ constexpr SearchPace kWarmPace = {.factor = 0.5, .least_part = 0.1, .patience = 
 constexpr int kRoundsBack = 4;
 
 /// Finds the Lagrange multipliers with the lowest bound, trial by trial: the volume algorithm
-/// (Barahona & Anbil 2000), a subgradient method that steps from the best multipliers so far along
-/// an average of the subgradients, so that it neither swings between nearly equal sensors nor needs
-/// many steps.
+/// (F. Barahona, R. Anbil, The volume algorithm: producing primal solutions with a subgradient
+/// method, 2000), a subgradient method that steps from the best multipliers so far along an average
+/// of the subgradients, so that it neither swings between nearly equal sensors nor needs many
+/// steps.
 class MultiplierSearch {
   public:
     /// \param weights of the cells: the multipliers are from 0 to these
@@ -235,6 +244,7 @@ struct Bound {
     std::uint64_t cut = 0;
 };
 
+/// When a search for multipliers ends.
 struct LagrangeLimits {
     /// A lower bound than this is not required. No solution with this value need exist.
     std::uint64_t cut = 0;

@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Searches for good layouts, with a proven upper bound. Greedy takes milliseconds and has a
+// guarantee for simple problems; Swap improves it and bounds the gap; Exact closes the gap by
+// branch and bound, in time that grows exponentially with the number of sensors.
+//
+//     SearchOptions options;
+//     options.optimizer = Optimizer::Exact;
+//     options.gap = 0.005;
+//     const SearchResult result = search(problem, options, progress);
+//     const double missed = double(result.bound - result.best.value) / double(result.bound);
+//
+// A result is feasible and has the value stated, whether or not the search was stopped; `bound`
+// holds in any case.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +32,11 @@ namespace ispace {
 /// lacks, and is 0 once too few are left; partial gains break ties. Adds every sensor that fits,
 /// even without gain, and at least the first 32 if progress says stop.
 ///
-/// Lazy (Minoux 1978): a candidate is evaluated again only while its upper bound exceeds the best
-/// gain. Reaches at least 1 - 1/e of the optimum if one sensor covers a cell, there is one kind and
-/// no budget; 1/2 with several kinds (Fisher, Nemhauser & Wolsey 1978).
+/// Lazy: a candidate is evaluated again only while its upper bound exceeds the best gain (M.
+/// Minoux, Accelerated greedy algorithms for maximizing submodular set functions, 1978). Reaches at
+/// least 1 - 1/e of the optimum if one sensor covers a cell, there is one kind and no budget (G. L.
+/// Nemhauser, L. A. Wolsey, M. L. Fisher, An analysis of approximations for maximizing submodular
+/// set functions, 1978); 1/2 with several kinds (part II by Fisher, Nemhauser & Wolsey).
 ///
 /// With is_connected each sensor after the first shares a cell with those before it, if any
 /// candidate does; no guarantee holds then.

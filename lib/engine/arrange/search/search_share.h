@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How one search is divided among processes (--shard) and continued (--resume). Parts of a job are
+// files of base/part_file.h.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Minimum-cost set cover with a proven bound: fewest sensors that see every cell.
+//
+//     SilentProgress progress;
+//     const SetCover problem{3, {{0, 1}, {1, 2}, {0, 2}}, {1, 1, 1}};
+//     const SetCoverResult result = minimumSetCover(problem, {}, progress);  // cost 2, bound 2
 #pragma once
 
 #include <cstddef>
@@ -20,6 +25,7 @@ struct SetCover {
     std::vector<std::uint32_t> costs;                 ///< of each, positive; sum below 2^31
 };
 
+/// Effort of a set cover.
 struct SetCoverOptions {
     std::uint64_t steps = 100'000;  ///< of local search, for each try
     int tries = 2;                  ///< of local search, in parallel
@@ -34,12 +40,14 @@ struct SetCoverResult {
 };
 
 /// Finds a minimum-cost cover. Removes dominated rows and columns, and solves each component by
-/// itself, here and in branches; improves a greedy cover by local search with weights of rows (Gao,
-/// Weise & Li 2015); raises Lagrangian multipliers by subgradients, whose reduced costs exclude
-/// columns (Beasley 1990; Caprara, Fischetti & Toth 1999); adds Chvatal-Gomory cuts; and branches
-/// on the columns of the shortest row. Multipliers are multiples of 2^-20, so all sums of them are
-/// exact and bounds hold in spite of rounding. Deterministic for any number
-/// of threads unless `progress` says stop; cost and bound are valid even then.
+/// itself, here and in branches; improves a greedy cover by local search with weights of rows (C.
+/// Gao, T. Weise, J. Li, An efficient local search heuristic with row weighting for the unicost set
+/// covering problem, 2015); raises Lagrangian multipliers by subgradients, and excludes columns by
+/// their reduced costs (J. E. Beasley, A Lagrangian heuristic for set-covering problems, 1990; A.
+/// Caprara, M. Fischetti, P. Toth, A heuristic method for the set covering problem, 1999); adds
+/// Chvatal-Gomory cuts; and branches on the columns of the shortest row. Multipliers are multiples
+/// of 2^-20, so all sums of them are exact and bounds hold in spite of rounding. Deterministic for
+/// any number of threads unless `progress` says stop; cost and bound are valid even then.
 SetCoverResult minimumSetCover(const SetCover& problem, const SetCoverOptions& options,
                                Progress& progress);
 

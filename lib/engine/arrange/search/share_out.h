@@ -21,7 +21,13 @@ struct SharedOut {
 
 /// Shares a number of sensors out over parts. Values and bounds of curves add up, as no sensor of
 /// one part sees floor of another; so the bound holds for every layout of that many sensors. Of
-/// equally good splits, earlier parts have more sensors. O(parts * sensors^2)
+/// equally good splits, earlier parts have more sensors. Dynamic programming over parts, exact:
+/// O(parts * sensors^2)
+///
+///     const std::vector<GainCurve> storeys{{{0, 5, 6}, {0, 5, 6}}, {{0, 4, 7}, {0, 4, 7}}};
+///     const SharedOut shared = shareOut(storeys, 3);  // counts {1, 2}, value 12
+///
+/// \pre sensors >= 0
 SharedOut shareOut(std::span<const GainCurve> curves, int sensors);
 
 }  // namespace ispace

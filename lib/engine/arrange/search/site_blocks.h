@@ -14,7 +14,8 @@ namespace ispace {
 /// Bounds the weight that the candidates of each site see by blocks of cells: in a block, a
 /// candidate sees at most the weight of the block, and at most that of all cells that its site sees
 /// there. Takes a few operations a block and a site, a fraction of CandidateSet::weighSite() for
-/// each, since most blocks of a nearly covered room have no weight left.
+/// each, since most blocks of a nearly covered room have no weight left. Bounds are never too low:
+/// the views of sites are rounded up. bound() is thread-safe.
 class SiteBlocks {
   public:
     /// Blocks are those of the problem, joined in pairs until the table takes at most kMaxBytes.

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Layouts that are best in the worst of several cases: other furniture, failures of sensors, ways
+// of an intruder. Each kind of case is a max-min problem, bounded by means of cases, for any
+// weights of these.
+//
+//     const SearchResult result = searchWorstCase(cases, options, progress);
+//     const CaseValue worst = worstCase(cases, result.best.chosen);  // worst.value == best.value
 #pragma once
 
 #include <cstddef>
