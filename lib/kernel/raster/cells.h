@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sets of cells as bytes, their runs and connected pieces, for maps of robots and plans of pixels.
+// (CellSet of base has a bit a cell, for views.) Everything is exact and in row order: results
+// depend on the set alone. Const members are thread-safe.
+//
+//     const CellPieces pieces(free, CellPieces::Joined::BySides);
+//     for (const CellPiece& piece : pieces.list())
+//         if (piece.border > 0) outside += piece.cells;
 #pragma once
 
 #include <algorithm>
@@ -14,6 +21,7 @@
 
 namespace ispace {
 
+/// Column and row of a cell.
 struct CellIndex {
     int x = 0, y = 0;
 };
@@ -46,14 +54,15 @@ class MapCells {
         return x >= 0 && y >= 0 && x < width_ && y < height_ && cells_[index(x, y)] != 0;
     }
     /// Inserts a cell.
-    /// Removes a cell.
     /// \pre the cell lies in the grid
     void insert(int x, int y) { cells_[index(x, y)] = 1; }
+    /// Removes a cell.
     /// \pre the cell lies in the grid
     void erase(int x, int y) { cells_[index(x, y)] = 0; }
     /// Inserts the cells from `first` to `last` of a row.
     /// \pre they lie in the grid, first <= last
     void insertRun(int y, int first, int last) { fillRun(y, first, last, 1); }
+    /// Removes them.
     void eraseRun(int y, int first, int last) { fillRun(y, first, last, 0); }
     [[nodiscard]] std::size_t count() const;
     /// One byte per cell, 1 for cells in the set: the whole grid, and one row.
@@ -125,7 +134,10 @@ struct CellPiece {
     }
 };
 
-/// Finds the connected pieces of a set of cells, in the order of their first cells.
+/// Finds the connected pieces of a set of cells, in the order of their first cells: runs of rows
+/// are labelled and joined with those of the row below (A. Rosenfeld, J. L. Pfaltz, Sequential
+/// operations in digital picture processing, 1966, by runs, with union and find). Memory: 16 bytes
+/// a run.
 class CellPieces {
   public:
     enum class Joined { BySides, ByCorners };

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/raster: grids and sets of cells, scanlines, contours, morphology, pictures as maps.
 // Uses geom; OpenCV and libpng inside.
+//
+// Cells count by their centres. Decisions whether a centre lies inside, on or outside of a curve
+// are exact for the doubles of centre and curve (orientation() of geom/predicates.h), so neighbours
+// that share an edge never both claim a cell, nor leave one out.
+//
+//     const Grid grid = gridOf({0, 0}, 0.1, 80, 50);
+//     const CellSet indoor = cellsIn(grid, environment.indoor());
+//     const double area = grid.cellArea() * double(indoor.count());  // m2
 #pragma once
 
 #include <cstddef>
@@ -95,7 +103,13 @@ struct GridAxis {
 /// For each row an edge that crosses it flips all cells to its left, so that after the last edge a
 /// cell's parity is the number of flips at cells from it on. The start of a flip is computed in
 /// doubles and, near rounding errors, settled by orientation(), so the result is exact. Rows are
-/// bits: parities of 64 cells take six shifts.
+/// bits: parities of 64 cells take six shifts. The order of edges does not matter, and curves need
+/// not be added one by one; edges that come twice cancel out but for the boundary. O(rows of each
+/// edge) to add, O(cells / 64) to finish. One per thread.
+///
+///     Scanline scan(grid, bounds(polygon));
+///     forEachEdge(polygon, [&](const Segment2& edge) { scan.add(edge); });
+///     scan.addInside(cells);
 class Scanline {
   public:
     Scanline() = default;

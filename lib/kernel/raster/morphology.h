@@ -7,7 +7,12 @@
 
 namespace ispace {
 
-// Morphology of sets of cells; sets do not extend beyond the grid. All functions take O(cells).
+// Morphology of sets of cells (J. Serra, Image Analysis and Mathematical Morphology, 1982); sets do
+// not extend beyond the grid. All functions take O(cells), whatever the size of the square, and are
+// pure: thread-safe, exact in whole cells.
+//
+//     const MapCells wide = opened(free, 6);         // passages of six cells and more
+//     const CellIndex middle = widestPlace(wide);
 
 /// Returns the union of all squares of `side` cells that lie in the set.
 /// \pre side >= 1
@@ -28,8 +33,9 @@ enum class BorderRule { In, Out };
 constexpr int kNoDistance = 2'000'000'000;
 
 /// Computes the squared Euclidean distance, in cells, from the middle of each cell to that of the
-/// nearest cell outside the set; in the order of MapCells::index. Exact (Meijster et al. 2000),
-/// O(cells).
+/// nearest cell outside the set; in the order of MapCells::index. Exact (A. Meijster, J. B. T. M.
+/// Roerdink, W. H. Hesselink, A general algorithm for computing distance transforms in linear time,
+/// 2000), O(cells).
 std::vector<int> squaredDistances(const MapCells& cells, BorderRule beyond);
 
 /// Finds the cell furthest from all cells outside the set, in steps to any of eight neighbours;
