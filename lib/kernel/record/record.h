@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Records: readers produce them, all other folders interpret them. A record is valid against its
+// schema from the start, keeps the file, line and column of each value for messages, and is cheap
+// to copy: copies share data, and a change copies it first, so records may be passed between
+// threads.
+//
+//     const Record desk = readRecord("desk at=2,3 heading=30", "--add", schemas);
+//     const Tuple& at = desk.tuple("at");            // {2, 3}, metres
+//     const Angle heading = desk.angle("heading");   // 30 degrees
 #pragma once
 
 #include <array>

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/record: the language of .env and .3dm: values, schemas, records, YAML, canonical form,
 // digest. Uses base, geom; yaml-cpp and OpenSSL inside.
+//
+// A schema states each key once: name, type, unit, bounds, default, help and role. Readers,
+// writers, edits, manual pages and completions follow from it. Values are in the units of files;
+// parsing is independent of the locale, and written values read back as the same bits.
+//
+//     const KeySpec width{.name = "width", .unit = Unit::Length, .lower = 0, .lower_open = true};
+//     const double metres = std::get<double>(parseValue(width, "80cm"));  // 0.8
 #pragma once
 
 #include <cstddef>
@@ -66,6 +73,7 @@ enum class Role {
     File,        ///< a path, relative to the folder of the file that names it
 };
 
+/// A key of a record, or the value of an option.
 struct KeySpec {
     std::string name;  ///< empty for an option's value: messages already name the option
     KeyType type = KeyType::Number;

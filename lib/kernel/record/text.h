@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The text of .env and .3dm, and digests. Reading and writing are inverse: the canonical text of a
+// document reads back as equal records, and is the same on every machine, so digests identify
+// rooms.
+//
+//     const Document room = readRecordText(readAll("room.env"), "room.env", schemas);
+//     const std::string canonical = writeRecordText(room);
+//     const std::string digest = environmentDigest(room.records);  // sha256:...
 #pragma once
 
 #include <cstddef>
@@ -113,7 +120,7 @@ Record readRecord(std::string_view line, const std::string& name, const Schemas&
 /// \throws FormatError; its findings name both lines
 void checkIds(const std::vector<Record>& records);
 
-/// Computes "sha256:" and 64 hex digits over the bytes.
+/// Computes "sha256:" and 64 hex digits over the bytes (FIPS 180-4).
 std::string sha256(std::string_view bytes);
 
 /// Computes the sha256 over the vertices, then the triangles, as little-endian 32-bit numbers.
