@@ -23,6 +23,7 @@ struct Enclosure {
 /// wall lines that would enclose it but for a gap is rejected, and the gap is the error (e.g. a
 /// closed pillar in a room that leaks). If any face exists, only gaps of at most half the plan's
 /// shorter side count as leaks.
+/// O(n log n); the search for a gap takes some times as long (findGap() of geom/planar_map.h).
 /// \throws FormatError if there is no such face: a gap in the lines, or an inside point on a
 ///         wall or outside of all faces
 Enclosure enclose(const WallPlan& plan, std::span<const Region> faces, const Box2& limits,

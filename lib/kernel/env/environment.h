@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/env: the environment: its records, bodies, indoor region, slices, mesh. Uses record,
 // geom.
+//
+// An environment is immutable, and everything derived from it (slices, regions, indexes) is
+// computed once, by the first thread that asks, and depends on the records alone. Metres, x-y
+// floor, z up. Copies cost a counter; an edit shares all that it does not change.
+//
+//     const Environment room(records, assignIds(records));
+//     const double area = room.indoor().area();                // m2
+//     const std::shared_ptr<const Level> level = room.level(0.3);
+//     const bool is_free = level->isFree({2, 1});
 #pragma once
 
 #include <map>

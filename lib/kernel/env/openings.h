@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Doors and windows: placed in wall lines, then cut out of all walls that they go through.
+// Coordinates along lines are metres from their beginning; openings that exceed their wall by
+// kFitDistance at most are fitted in, others are findings. Deterministic, single-threaded.
+//
+//     const std::vector<Opening> openings = placeOpenings(elements, plan, findings);
+//     const CutWalls walls = cutOpenings(elements, plan, weld(plan.lines), openings, findings);
 #pragma once
 
 #include <cstddef>

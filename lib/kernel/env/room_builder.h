@@ -22,7 +22,9 @@ struct BuiltRoom {
     double height;
 };
 
-/// Builds the parts; parameters and errors are those of Environment.
+/// Builds the parts; parameters and errors are those of Environment. Shapes and the enclosed region
+/// are computed at the same time; findings come in the order of the records all the same. O(n log
+/// n)
 BuiltRoom buildRoom(std::span<const Record> records, std::span<const std::string> ids);
 
 /// The elements of an environment after an edit that leaves its walls.
@@ -32,7 +34,7 @@ struct EditedElements {
     bool is_changed = false;
 };
 
-/// Builds the elements of changed records, which share the bodies of equal ones. Returns nothing if
+/// Builds the elements of changed records, which share the bodies of equal ones. Empty if
 /// walls, openings, inside points or the order of the records differ, or if a record has findings:
 /// the environment must be built as a whole, then.
 /// \param corners of the shapes of the elements before, see BuiltRoom

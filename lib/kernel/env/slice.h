@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A room as a level laser sees it: lines and solids at one height. The cut of a mesh is exact up to
+// one rounding of each point: the plane passes vertices at its height by an infinitesimal, so
+// curves of closed surfaces close, and triangles that share an edge share the point (H.
+// Edelsbrunner, E. P. Mücke, Simulation of simplicity, 1990, is the general method).
+//
+//     const Slice slice = environment.slice(0.3);
+//     slice.forEachLine([&](const Segment2& line) { lines.push_back(line); });
 #pragma once
 
 #include <cstddef>

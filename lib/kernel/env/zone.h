@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of the floor that options name: zones of records, rectangles, polygons, floor at doors.
+// Errors name the nearest known zone.
+//
+//     const NamedZone zone = readZone("rect:0,0,2,150cm", environment);
+//     for (const NamedZone& at_door : readZones("door:front*,1m", environment))
+//     use(at_door.outline);
 #pragma once
 
 #include <span>
