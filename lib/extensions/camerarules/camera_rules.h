@@ -2,9 +2,8 @@
 // Faces that cameras see from ahead, and zones that they must not see.
 //
 // Both are areas of overlays of the cameras' exact regions, in which a set of points that face a
-// camera is a wedge: apex at the camera, sides at the rule's angle. Views are cut to the box of a
-// zone first, since the lattice of an overlay grows with its extent. O(n log n) for each zone in
-// the edges there.
+// camera is a wedge: apex at the camera, sides at the rule's angle. What remains is cut to the box
+// of its zone before it is united, since the lattice of an overlay grows with its extent.
 //
 //     const FacingRule rule = parseFacing("entrance,45deg,180=90%");
 //     for (const FacingResult& result : measureFacing(scene, coverage, {&rule, 1}))

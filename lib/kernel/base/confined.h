@@ -5,8 +5,9 @@
 // out.
 //
 // The parent alone opens files, pays for work by its Budget and turns every failure of the child,
-// crashes and silence included, into one FormatError. A child that idles ends after five times its
-// processor time on the wall clock. Without seccomp reading fails unless --unconfined allows it.
+// crashes and silence included, into one FormatError (std::bad_alloc where the user's own limit of
+// memory is less than the child's). A child is given up after five times its seconds of processor
+// time on the wall clock. Without seccomp reading fails unless --unconfined allows it.
 //
 //     ConfinedReader reader;  // one process for many files
 //     const std::string triangles = reader.read(task);

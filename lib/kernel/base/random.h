@@ -8,7 +8,7 @@
 // Method: ten rounds of Philox4x32 (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2,
 // 3, 2011), tested against Random123's known answers; normals by G. E. P. Box, M. E. Muller, A note
 // on the generation of random normal deviates, 1958. The bits are part of our formats: they are the
-// same on every processor, compiler and vector width, and never change. Not for secrets.
+// same on every processor, compiler and vector width. Not for secrets.
 #pragma once
 
 #include <array>

@@ -11,7 +11,7 @@ namespace ispace {
 
 /// The cells of a grid that count: views hold those of them that they see, and arbitrary others.
 ///
-/// Freedom to hold others joins runs over gaps, so that views take fewer runs, and cells that do
+/// Runs may span gaps between counted cells, so that views take fewer of them, and cells that do
 /// not count need no ray. Any figure must be taken over counted cells alone. Eight bytes a cell;
 /// O(cells) to build, next() O(1); const members are thread-safe.
 ///

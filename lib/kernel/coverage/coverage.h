@@ -6,8 +6,8 @@
 // cells of a grid with their centre in view (the thesis' way; error of the order of a cell's edge
 // times the boundary). coverage_exact_test checks that cells converge to the closed form.
 //
-// Figures and bytes are the same for any number of threads. Costs: the whole program takes 20 ms
-// with three sensors in a room; views run in parallel, a union of a hundred views takes 3 ms.
+// Figures and bytes are the same for any number of threads. Views are computed in parallel; the
+// union of n views costs one overlay of their outlines. docs/performance.md has measured times.
 //
 //     RayScenes worlds(scene.environment);
 //     const Coverage coverage = measureCoverage(scene, worlds, {.plane = 1.2});

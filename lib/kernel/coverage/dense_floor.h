@@ -4,7 +4,7 @@
 //
 // A level set (level_set.h) of pixels a radian over the density less the distance, which is 0 at
 // the density and has no pole at the camera. Bounds by interval arithmetic skip boxes of one sign,
-// so that the lens model is evaluated near the boundary alone. Arcs lie within kConicError of it.
+// so that most samples near the boundary alone are taken. Accuracy is that of levelSet().
 #pragma once
 
 #include <optional>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/kernel/coverage: holes of the floor that an overlay of views need not see. Areas
 // and pieces are those of the whole overlay. O(n log n) in the edges of the floor, once for a room;
-// then O(far holes) for each set of views.
+// then a look-up of each hole among the boxes of the views, and a copy of the curves that remain.
 #pragma once
 
 #include <span>

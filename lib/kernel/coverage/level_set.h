@@ -2,10 +2,11 @@
 // Private to lib/kernel/coverage: the area where a smooth function of a plane is at least 0.
 //
 // Marching squares (the plane's case of W. E. Lorensen, H. E. Cline, Marching cubes, 1987) over a
-// grid of samples; roots on the sides of cells to 1e-10 m by regula falsi in its Illinois variant
-// (M. Dowell, P. Jarratt, A modified regula falsi method for computing the root of an equation,
-// 1971); roots are joined by arcs within kConicError of the boundary. O(side^2) samples, with
-// bounds those near the boundary alone.
+// grid of samples; roots on the sides of cells by regula falsi in its Illinois variant (M. Dowell,
+// P. Jarratt, A modified regula falsi method for computing the root of an equation, 1971), until
+// they are known to 1e-10 m, or for 60 steps. Roots are joined by arcs, which are divided until
+// points of the boundary at their quarters lie within kConicError, eight times at most. O(side^2)
+// samples, with bounds those near the boundary alone.
 //
 //     const auto disc = levelSet([](Point2 p) { return 1 - dot(p - Point2(), p - Point2()); },
 //                                {{-2, -2}, {2, 2}});

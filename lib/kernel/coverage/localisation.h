@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The error with which sensors localise a tag or a person.
 //
-// Each sensor that sees a spot adds its Fisher information about the position; the inverse of the
+// Each sensor that sees a spot adds its Fisher information about the position (receivers of a tag
+// and UWB anchors only if enough of them hear it, see SpotInformation); the inverse of the
 // sum bounds the covariance of any unbiased estimate (the Cramer-Rao bound: S. M. Kay, Fundamentals
 // of Statistical Signal Processing: Estimation Theory, 1993). The error is the root of the trace,
 // metres. It assumes independent errors of readings, by the noise of each model.

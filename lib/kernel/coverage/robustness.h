@@ -2,9 +2,8 @@
 // How much coverage suffers from errors of mounting and from failures of sensors.
 //
 // Mountings are sampled: random numbers are keyed by seed, sample and sensor (base/random.h), so
-// sample k is the same whatever samples ran before, on any number of threads. A quantile of n
-// samples has the error of order statistics; the mean that of FigureSpread::standardError().
-// Failures are enumerated: the worst case is exact, no heuristic.
+// sample k is the same whatever samples ran before, on any number of threads. Failures are
+// enumerated: the worst case is the least over all sets of so many sensors, no heuristic.
 #pragma once
 
 #include <cstdint>

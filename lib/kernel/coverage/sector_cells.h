@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells that level lasers see, for all headings at once: one visibility polygon is rasterised row
 // by row, and its runs are cut where directions pass from one sector to the next. A cell counts by
-// its centre. Thread-safe for different `parts`.
+// its centre. Thread-safe for different `parts`; each thread keeps its scratch memory.
 #pragma once
 
 #include <optional>

@@ -2,7 +2,8 @@
 // Shapes of elements: upright prisms, sheets and plates without thickness, meshes. From them follow
 // slices (slice.h), meshes (mesh.h) and shadows. World frame, metres, z up. Prisms are closed sets:
 // top and bottom belong to them. Round prisms keep their ellipse, so rays meet the true curve.
-// Bodies depend on their record alone, but for walls, which need the welded lines of all (walls.h).
+// Bodies depend on their record alone, but for those of walls, which need the welded lines of all
+// (walls.h), and of doors and windows, which fill openings in these (openings.h).
 //
 //     const Body table = bodyOf(readRecord("table at=2,3 size=1.2", "-", schemas));
 #pragma once

@@ -2,9 +2,10 @@
 // lib/kernel/env: the environment: its records, bodies, indoor region, slices, mesh. Uses record,
 // geom.
 //
-// An environment is immutable, and everything derived from it (slices, regions, indexes) is
-// computed once, by the first thread that asks, and depends on the records alone. Metres, x-y
-// floor, z up. Copies cost a counter; an edit shares all that it does not change.
+// An environment is immutable, and all that is derived from it (levels, regions, indexes) depends
+// on the records alone, whichever thread asks first. The index of the indoor region and the digest
+// are computed once, levels are cached while they are few, slices are computed at each call.
+// Metres, x-y floor, z up. Copies cost two counters; an edit shares all that it does not change.
 //
 //     const Environment room(records, assignIds(records));
 //     const double area = room.indoor().area();                // m2

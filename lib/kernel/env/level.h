@@ -19,8 +19,9 @@ namespace ispace {
 /// computed at the first call and shared by all threads, and by all levels with the same slice:
 /// between the tops of furniture and the walls' heights are equal.
 ///
-/// Point queries are exact and take O(log n), typically; views are those of VisibilityMap. All
-/// members are thread-safe, and results do not depend on which thread computed a part.
+/// Point queries take O(log n), typically; sides are exact, distances round. Views are those of
+/// VisibilityMap. All members are thread-safe, and results do not depend on which thread computed a
+/// part.
 ///
 ///     VisibleRegion view;
 ///     room.level(0.3)->query({2, 1}, 8, view);

@@ -27,10 +27,10 @@ struct OpeningSite {
 };
 
 /// Finds the wall lines that `door` and `window` records name: by the wall's id and an offset, by a
-/// point, or by both ends. A point must lie within kNearWall of a line or kNearFace of a face, so
-/// that a slip of the pen is an error with the nearest wall in its message, and no door lands in
-/// another room. Ties are decided by the order of the lines. The grid of lines is built at the
-/// first use: not thread-safe.
+/// point, or by both ends. A point must lie within kNearWall of a line or kNearFace of a face, else
+/// the finding names the nearest wall. Of lines equally near, within kWeldDistance, the one counts
+/// that the opening fits best, then the first. The grid of lines is built at the first use: not
+/// thread-safe.
 class OpeningSites {
   public:
     /// Stores its arguments by reference.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Point location for bulk queries, exact: sides are those of the single queries of geom/polygon.h.
-// Built once, immutable and thread-safe after that.
+// Point location for bulk queries: sides are exact, those of the single queries of geom/polygon.h;
+// margins and reaches compare distances, which round. Built once, immutable and thread-safe after
+// that.
 //
 //     const RegionIndex index(regions.parts);
 //     const Side side = index.locate({2, 1});

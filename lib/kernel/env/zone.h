@@ -3,8 +3,7 @@
 // Errors name the nearest known zone.
 //
 //     const NamedZone zone = readZone("rect:0,0,2,150cm", environment);
-//     for (const NamedZone& at_door : readZones("door:front*,1m", environment))
-//     use(at_door.outline);
+//     const std::vector<NamedZone> at_doors = readZones("door:front*,1m", environment);
 #pragma once
 
 #include <span>

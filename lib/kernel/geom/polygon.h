@@ -5,7 +5,7 @@
 // Points are located exactly, by the orientation of the doubles given; areas and lengths round.
 // Curves may touch themselves and each other at points; degenerate curves (fewer than three
 // vertices, no area) have area 0 and contain no inner point. Pure functions, O(n) unless stated;
-// for many point queries use PointLocation of lib/kernel/env.
+// for many point queries use RegionIndex of env/point_location.h.
 //
 //     const Region ring{{{0, 0}, {4, 0}, {4, 4}, {0, 4}}, {{{1, 1}, {1, 3}, {3, 3}, {3, 1}}}};
 //     ring.area();            // 12 m2

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From cells to polygons: boundaries along cell edges, exact, and smooth ones within a tolerance.
-// Results depend on the cells alone: pure functions, thread-safe.
+// From cells to polygons: boundaries along cell edges, exact in units of cells, and smooth ones
+// within a tolerance. In metres, corners round. Results depend on the cells alone: pure functions,
+// thread-safe.
 //
 //     const std::vector<Region> rooms = cellRegions(grid, cells);  // areas are those of the cells
 #pragma once

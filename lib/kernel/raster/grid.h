@@ -3,8 +3,9 @@
 // Uses geom; OpenCV and libpng inside.
 //
 // Cells count by their centres. Decisions whether a centre lies inside, on or outside of a curve
-// are exact for the doubles of centre and curve (orientation() of geom/predicates.h), so neighbours
-// that share an edge never both claim a cell, nor leave one out.
+// are exact for the doubles of centre and curve (orientation() of geom/predicates.h). A centre on
+// the edge of two neighbours is in neither by cellsIn(), in both by cellsBlocked(); any other is in
+// one of them.
 //
 //     const Grid grid = gridOf({0, 0}, 0.1, 80, 50);
 //     const CellSet indoor = cellsIn(grid, environment.indoor());
@@ -104,8 +105,9 @@ struct GridAxis {
 /// cell's parity is the number of flips at cells from it on. The start of a flip is computed in
 /// doubles and, near rounding errors, settled by orientation(), so the result is exact. Rows are
 /// bits: parities of 64 cells take six shifts. The order of edges does not matter, and curves need
-/// not be added one by one; edges that come twice cancel out but for the boundary. O(rows of each
-/// edge) to add, O(cells / 64) to finish. One per thread.
+/// not be added one by one; edges that come twice cancel out but for the boundary. O(rows of an
+/// edge, or the columns of a level one) to add, O(cells of the window / 64) to finish. One per
+/// thread.
 ///
 ///     Scanline scan(grid, bounds(polygon));
 ///     forEachEdge(polygon, [&](const Segment2& edge) { scan.add(edge); });

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures as inputs: maps of robots and textures. Files are untrusted: sizes are checked before
 // memory is allocated, and formats that only OpenCV reads are decoded by a process without rights
-// (base/confined.h). Decoding gives the same samples on every machine.
+// (base/confined.h). PNG and PGM give the same samples on every machine; those of JPEG and other
+// lossy formats depend on the installed OpenCV.
 //
 //     const GreyPicture picture = parsePicture(readAll("map.pgm"), "map.pgm");
 //     const MapCells walls = occupiedCells(picture, OccupancyRule());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Changes of records by options, as `envc --move desk*:1,0`, and records moved between frames.
-// Decimal arithmetic: numbers stay as short as a user wrote them, and a change and its reverse
-// restore the file byte by byte. Pure functions but for placeIn() and moveInFrame(), which change
-// their record.
+// Decimal arithmetic: numbers stay as short as a user wrote them, and a move there and back
+// restores the coordinates. Pure functions but for placeIn() and moveInFrame(), which change their
+// record.
 //
 //     const std::vector<Edit> edits{parseEdit(Edit::Kind::Move, "desk*:1,0")};
 //     records = edited(std::move(records), edits, schemas);

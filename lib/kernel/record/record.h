@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records: readers produce them, all other folders interpret them. A record is valid against its
-// schema from the start, keeps the file, line and column of each value for messages, and is cheap
-// to copy: copies share data, and a change copies it first, so records may be passed between
-// threads.
+// Records: readers produce them, all other folders interpret them. Each value is valid by its
+// schema; readers also check that the required keys are there. A record keeps the file, line and
+// column of each value for messages. Copies share data, and a change copies it first: different
+// copies may be used by different threads, one record by one thread at a time unless all of them
+// read.
 //
 //     const Record desk = readRecord("desk at=2,3 heading=30", "--add", schemas);
 //     const Tuple& at = desk.tuple("at");            // {2, 3}, metres

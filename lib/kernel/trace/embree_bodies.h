@@ -2,8 +2,8 @@
 // Moving bodies in Embree. Private to lib/kernel/trace and lib/kernel/trace/render.
 //
 // For rays of any direction among many bodies, as of pictures; scans use body_scan.h. Boxes are
-// enlarged by more than the rounding of float32 (setBounds), intersections are those of BodyFrame
-// in doubles: no body is missed, and both ways give the same bits.
+// enlarged by more than the rounding of float32 (setBounds), so that no body is missed. A hit is
+// that of BodyFrame in doubles, for the ray in float32 that Embree has, and is rounded to float32.
 #pragma once
 
 #include <span>

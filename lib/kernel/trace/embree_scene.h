@@ -25,8 +25,7 @@ namespace ispace {
 ///
 /// Rays ignore surfaces within `ray_epsilon` of their origin, continuations of their planes, and
 /// surfaces seen exactly edge-on. Each scene creates an Embree device, which takes some 50
-/// microseconds; scenes share no state. Thread-safe once built. In a large scene Embree takes four
-/// fifths of the time of a packet, the planes in doubles 7 %.
+/// microseconds; scenes share no state. Thread-safe once built.
 class EmbreeScene {
   public:
     /// \param packet_width rays traced together: 1, 4, 8 or 16; 0 for the processor's native width

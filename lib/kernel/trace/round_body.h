@@ -8,9 +8,9 @@
 // differently: one form for all would change the last bits of ranges.
 //
 // The discriminant is a r^2 - (q x d)^2, by the cross product of origin and direction, instead of
-// b^2 - a c: far bodies lose no digits to the cancellation of two large squares. Roots are c / far
-// and far / a, so that neither cancels. Errors are some ulp of the range, times the range over the
-// radius at grazing rays. Closed sets: a ray that touches meets.
+// b^2 - a c: far bodies lose no digits to the cancellation of two large squares. meetUnitDisc()
+// takes the roots c / far and far / a, so that neither cancels. A ray that grazes a body loses half
+// of the digits, as the root of a discriminant near 0 does. Closed sets: a ray that touches meets.
 #pragma once
 
 #include <algorithm>

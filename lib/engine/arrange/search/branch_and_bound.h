@@ -9,7 +9,7 @@
 //
 //     const Bound bound = lagrangianBound(problem, best.chosen, {.cut = best.value}, progress);
 //     const SearchResult exact =
-//         branchAndBound(problem, bound, {best, bound.value}, 0, progress);  // value == bound
+//         branchAndBound(problem, bound, {best, bound.value}, 0, progress);
 #pragma once
 
 #include <cstdint>

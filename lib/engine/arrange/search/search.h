@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Searches for good layouts, with a proven upper bound. Greedy takes milliseconds and has a
-// guarantee for simple problems; Swap improves it and bounds the gap; Exact closes the gap by
-// branch and bound, in time that grows exponentially with the number of sensors.
+// Searches for good layouts, with a proven upper bound. Greedy is the fastest and has a guarantee
+// for simple problems; Swap improves its layout and bounds the gap; Exact closes the gap by branch
+// and bound, in time that may grow exponentially with the number of sensors.
 //
 //     SearchOptions options;
 //     options.optimizer = Optimizer::Exact;

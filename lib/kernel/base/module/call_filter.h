@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The system calls of confined programs, by machine.
 //
-// The list is complete: a program that has started, with its libraries loaded and its files open,
-// needs memory, reads, a socket to its parent and exit, and gets no more. There is no open, no
-// execve, no socket, no ioctl, no clone. Calls that are not allowed fail with EPERM instead of
-// killing, so that a library that tries a faster way falls back.
+// A program that has started, with its libraries loaded and its files open, needs memory, reads, a
+// socket to its parent, locks, the clock, random bytes and exit, and gets no more: no open, execve,
+// socket, ioctl or clone. Calls that are not allowed fail with EPERM instead of killing, so that a
+// library that tries a faster way falls back.
 #pragma once
 
 #include <linux/audit.h>

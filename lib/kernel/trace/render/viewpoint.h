@@ -2,8 +2,9 @@
 // Projections of pictures: cameras with their lenses, and parallel views such as plans. Pixel
 // centres are whole numbers, (0, 0) the upper left one; columns count to the right, rows down.
 //
-//     const OrthographicView plan({{4, 3, 10}, Angle::degrees(90), Angle::degrees(-90), {}}, 8,
-//     800, 600); const PixelPoint at = plan.project({4, 3, 0});  // the centre: (399.5, 299.5)
+//     const Pose3 above{{4, 3, 10}, Angle::degrees(90), Angle::degrees(-90), {}};
+//     const OrthographicView plan(above, 8, 800, 600);      // 8 m wide, 1 cm a pixel
+//     const PixelPoint at = plan.project({4, 3, 0});        // the centre: (399.5, 299.5)
 #pragma once
 
 #include <memory>
