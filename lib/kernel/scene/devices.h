@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The device catalogue: sensors, robots and projectors one can buy, with parameters from data
+// sheets.
+//
+// Each record names its public sources and how far they are trusted: `confidence` is A for a
+// maker's document, B for a second source, U if unsure. A catalogue is immutable, and thread-safe
+// as const objects are. Look-ups are O(devices); pointers to records hold as long as the catalogue.
+//
+//     const DeviceCatalogue devices = loadDevices("share/devices");
+//     const Record* const scanner = devices.find("urg-04lx");  // null if unknown
 #pragma once
 
 #include <string>
@@ -33,7 +42,8 @@ class DeviceCatalogue {
 
 /// Reads all `*.3dm` files of a folder, and `kinds/KEYWORD.3dm` in it for each kind of sensor that
 /// the program has, in the order of their names. Devices of kinds that extensions add lie there.
-/// \throws FormatError for bad files and doubled models, std::system_error if it cannot be read
+/// \throws FormatError with the findings of all files: bad records, doubled models, parameters that
+/// contradict each other; std::system_error if the folder or a file cannot be read
 DeviceCatalogue loadDevices(const std::string& folder);
 
 /// Finds the device that `model` of a record names; null if the record has no model.

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elements of the room that the device catalogue has models of, as it has of sensors and robots.
+//
+// A device fills only those keys that a record does not write. The scene keeps records and digest
+// as written; the environment is built of the filled records.
 #pragma once
 
 #include <optional>

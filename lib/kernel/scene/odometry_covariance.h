@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Covariances of odometry, as they follow from a robot's noise.
+//
+// Errors of a turn and of a way are independent, with variances of alpha1 |turn| + alpha2 |way|
+// rad2 and alpha3 |way| + alpha4 |turn| m2: the odometry motion model of S. Thrun, W. Burgard, D.
+// Fox, Probabilistic Robotics, 2005, with variances in proportion to the way, so that they do not
+// depend on the length of a step. Poses are compounded to the first order (R. C. Smith, P.
+// Cheeseman, On the representation and estimation of spatial uncertainty, 1986). Pure functions,
+// O(1).
+//
+//     EstimatedPose robot{start};
+//     const PoseCovariance step = covarianceOf(motion, alphasOf(model.noise));
+//     robot.covariance = propagated(robot.covariance, robot.pose.heading, motion, step);
 #pragma once
 
 #include <array>
@@ -41,6 +52,7 @@ PoseCovariance propagated(const PoseCovariance& before, Angle heading, const Pos
 
 /// Returns the covariance of a mean velocity over some seconds, in the robot's frame: with x and y
 /// in m/s and h in radians a second. Its integral grows as the covariance of poses does.
+/// \pre seconds > 0
 PoseCovariance twistCovariance(Vec2 velocity, Angle rate, const MotionAlphas& alphas,
                                double seconds);
 

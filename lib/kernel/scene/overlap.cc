@@ -45,6 +45,7 @@ Point2 middleOf(const Polygon& polygon) {
 }
 
 /// Computes the least depth along the normals of the edges of `edges`; empty if the two are apart.
+/// O(n + m): the normals turn once around.
 std::optional<double> leastDepth(const Polygon& edges, const Polygon& a, const Polygon& b,
                                  double least) {
     // Four calipers, as the normals rotate: the extent of each polygon in both directions.

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/kernel/scene: overlaps of shapes as seen from above.
+//
+// Shapes overlap if they share more than kCornerTolerance in depth: sides that touch do not. Convex
+// polygons are compared along the normals of all their edges (the theorem of separating axes): the
+// least depth along these is the shortest way out, up to rounding, since the edges of the
+// difference of two convex polygons have no other normals. Cuts of meshes are compared by their
+// lines; outlines that coincide are found by points beside their first eight edges, so that a
+// shared part may be missed there.
+//
+//     if (const auto overlap = overlapOf(part.footprint, other.footprint)) report(overlap->place);
 #pragma once
 
 #include <algorithm>
@@ -83,16 +92,17 @@ class Parts {
     BoxTree tree_;
 };
 
-/// The meshes of one element, cut at any height.
+/// The meshes of one element, cut at any height. Keeps up to 256 cuts; not thread-safe.
 class MeshCuts {
   public:
     explicit MeshCuts(const Body& body);
 
     [[nodiscard]] const Box2& box() const { return box_; }
     [[nodiscard]] const HeightRange& heights() const { return heights_; }
+    /// Computes the cut, or returns a kept one. The reference holds until the next call.
     const Slice& at(double height);
-    /// Returns heights within a range at which to cut: few, and the same ones for ranges that share
-    /// them.
+    /// Returns heights within a range at which to cut: up to five of 32 levels of the meshes, the
+    /// same ones for ranges that share them; the middle of the range if no level lies in it.
     [[nodiscard]] std::vector<double> heightsIn(const HeightRange& heights) const;
 
   private:

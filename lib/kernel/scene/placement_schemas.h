@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The schemas of placements: sensors, robots, people, furniture that a layout adds.
+//
+// sceneSchemas() is built at its first call and constant from then on: schemas and keys that are
+// added later have no effect. Records point into it. Thread-safe after that.
+//
+//     const Schemas& schemas = sceneSchemas();
+//     const Record laser = readRecord("laser id=l1 at=2,1,0.3 model=urg-04lx", "-", schemas);
 #pragma once
 
 #include <optional>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Preferences of people, checked when a scene is made: 0 to a million lux, -100 to 100 degrees
+// Celsius.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Robots and people as records describe them, and the poses of what they carry.
+//
+// A robot's frame lies on the floor, with the origin at the centre of rotation and x forward;
+// bearings and turns are counter-clockwise. Metres, seconds. Written keys win over those of the
+// model, and these over the bare robot's.
+//
+//     const RobotModel robot = robotOf(record, devices);
+//     const Wheels wheels = wheelsOf(robot);  // of the data sheet, or estimated from the body
 #pragma once
 
 #include <array>

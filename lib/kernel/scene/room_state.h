@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// States of actuators: values of records that change while the world runs, and the edits that
+// change them.
+//
+// Values are text of the record language (metres, degrees), except that flags are 1 and 0.
+// Functions here check names; a value is checked when its edit is applied. O(records).
+//
+//     const std::string_view open = "open=1";
+//     const std::string request = stateChange(scene, "door1", {&open, 1});
+//     const std::vector<Edit> edits = parseEdits(request);  // of "SET door1.open=yes"
 #pragma once
 
 #include <optional>

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/scene: Scene = environment + layout, the device catalogue, the states of rooms. Uses
 // env and below.
+//
+// A scene is resolved at once: devices give the parameters that records lack, carriers give poses,
+// and all poses are in the world at the start. It depends on its records and on the catalogue
+// alone. Metres, x-y floor, z up; headings count counter-clockwise from +x.
+//
+// Doubled ids and elements with unknown models are thrown first; after them the findings about
+// placements and about the environment come as one FormatError. A `mesh` record has a body once its
+// file is loaded (Record::setMesh()). Scenes are values: several threads may read one, and a change
+// builds another, which shares the data of the environment.
+//
+//     const DeviceCatalogue devices = loadDevices("share/devices");
+//     const Document room = readRecordText(readAll("room.env"), "room.env", sceneSchemas());
+//     const Scene scene = makeScene(room, nullptr, devices);
+//     for (const Sensor& laser : sensorsOf<Laser>(scene)) ids.push_back(laser.id);
 #pragma once
 
 #include <cstddef>
@@ -59,7 +73,7 @@ struct Scene {
     }
 };
 
-/// Returns the placed sensors whose model has this type, in order.
+/// Returns copies of the placed sensors whose model has this type, in order.
 template <typename Model>
 std::vector<Sensor> sensorsOf(const Scene& scene) {
     std::vector<Sensor> found;
@@ -69,7 +83,7 @@ std::vector<Sensor> sensorsOf(const Scene& scene) {
 }
 
 /// Merges LAYOUT into ENV: each record replaces the one with the same written id, the others
-/// follow. \throws FormatError if the replaced record has another keyword
+/// follow. O(n). \throws FormatError if the replaced record has another keyword
 std::vector<Record> joinRecords(const std::vector<Record>& environment,
                                 const std::vector<Record>& layout);
 
@@ -113,7 +127,8 @@ bool isAbout(const Edit& edit, const std::string& id);
 /// Returns the key of a record that names a file; null without one.
 const char* fileKeyOf(const Record& record);
 
-/// Returns true if records that these edits change or add name files. \param scene after the edits
+/// Returns true if records that these edits change or add name files. \param scene after the edits,
+/// of which one at most adds a record
 bool touchFiles(const std::vector<Edit>& edits, const Scene& scene);
 
 /// Returns the current pose of a robot or a person by id; empty for unknown ids.

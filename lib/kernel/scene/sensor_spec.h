@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors as options name them, such as `--sensor urg-04lx,rate=5:3`: a record without a position,
+// and a number. Values are checked by the key's schema; contradictions between them are found when
+// the model is read.
+//
+//     const auto [record, count] = readSensorSpec("laser,range=0.1,4:2", kinds, schemas, devices);
 #pragma once
 
 #include <optional>

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/scene/findings: the checks of a scene, one list for all tools, so that all report the
 // same. Below the list stand the parts of single checks, for the sources of this folder.
+//
+// Overlaps, and positions outside the room, count beyond kCornerTolerance. Findings depend on the
+// scene alone; each call derives its own data, so several threads may check scenes at once.
+//
+//     for (const Finding& finding : checkScene(scene, {.checks = {"outside", "buried"}}))
+//         texts.push_back(finding.diagnostic().text());
 #pragma once
 
 #include <cstddef>

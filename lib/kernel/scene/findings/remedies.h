@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Moves that resolve findings, found by trial: each candidate is applied, and the scene is built
+// and checked again. Up to 133 candidates a record, each at the cost of checkScene() and of the
+// elements that change. Deterministic.
+//
+//     const std::vector<Finding> findings = checkScene(scene);
+//     for (const Remedy& remedy : remediesOf(scene, findings, {}, 3, devices))
+//         proposals.push_back(remedy.text);
 #pragma once
 
 #include <cstddef>

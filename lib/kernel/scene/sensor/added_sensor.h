@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors of kinds that extensions add, behind one type, so that the list of kinds does not name
+// them. A call costs a virtual function; parameters never change once they are stored, and copies
+// share them.
+//
+//     struct Thermopile { std::string model; double max_range = 5; /* ... */ };
+//     const SensorModel model = modelOf(Thermopile());
+//     const Thermopile* const same = tryModel<Thermopile>(model);
 #pragma once
 
 #include <cstddef>

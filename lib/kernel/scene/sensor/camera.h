@@ -1,4 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cameras: from directions to pixels and back, by three lens models.
+//
+// Pinholes with distortion (D. C. Brown, Decentering distortion of lenses, 1966), fisheyes (J.
+// Kannala, S. S. Brandt, A generic camera model and calibration method for conventional,
+// wide-angle, and fish-eye lenses, 2006), cameras under mirrors (C. Geyer, K. Daniilidis, A
+// unifying theory for central panoramic systems and practical implications, 2000). Coefficients are
+// those of OpenCV and ROS.
+//
+// project() is a closed form. ray() inverts it: in closed form for straight pinholes and mirrors;
+// by Newton's method for the others, until the point of the picture's plane is off by less than
+// 1e-14 focal lengths of a pinhole, or the angle of a fisheye no longer changes. Both are empty
+// beyond `widest`, where the projection folds. O(1), without allocation; thread-safe.
+//
+//     const Camera camera;                           // 640 x 480 pixels, 45 degrees across
+//     const auto pixel = camera.project({2, 0.1, -0.2});
+//     const auto ray = camera.ray(*pixel);           // that direction, of unit length
 #pragma once
 
 #include <array>
@@ -62,7 +78,8 @@ struct Camera {
     /// Computes the focal length in pixels by which `side` pixels span the angle.
     [[nodiscard]] double focalFor(double side, Angle fov) const;
     /// Returns the angle off the axis beyond which the picture of a ray moves back towards the
-    /// centre.
+    /// centre, of radial distortion, to some 1e-7 rad. Looks at 2048 angles: a narrower fold is
+    /// missed.
     [[nodiscard]] Angle turningAngle() const;
 
     [[nodiscard]] std::size_t pixels() const {
@@ -85,13 +102,14 @@ struct Camera {
     /// Computes the field of view between the rays of the middles of opposite edges.
     [[nodiscard]] Angle fovX() const;
     [[nodiscard]] Angle fovY() const;
-    /// Returns the greatest angle off the axis in the picture.
+    /// Returns the greatest angle off the axis in the picture: by its corners, with a slack of 1 %
+    /// of the tangent; `widest` if a corner has no ray or lies 90 degrees or more off the axis.
     [[nodiscard]] Angle widestInPicture() const;
 
     [[nodiscard]] double readingRate() const { return rate; }
     [[nodiscard]] static double readingTime() { return 0; }
     [[nodiscard]] std::size_t rays() const { return pixels(); }
-    /// Returns true if every point on the border of the picture has a ray.
+    /// Returns true if every point on the border of the picture has a ray; tests 257 on each side.
     [[nodiscard]] bool fillsPicture() const;
     /// Returns true if distortion is not radially symmetric (p1, p2).
     [[nodiscard]] bool isLopsided() const {

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fields of view of sensors, and the shapes that draw sensors and their views.
+//
+// Tests of single points, in doubles, without trigonometry but for curved projections. Edges count
+// as inside, with a slack of kUnitTolerance times the distance (of pictures as Camera::holds());
+// ranges compare as float32. Const members are thread-safe; copies share their camera.
+//
+//     const FieldOfView view = FieldOfView::cone(pose, Angle::degrees(30), 8);
+//     const bool is_in_view = view.holds({3, 1, 0.5});  // occlusion is tested elsewhere
 #pragma once
 
 #include <cmath>

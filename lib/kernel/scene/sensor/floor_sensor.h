@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pressure mats and light gates: sensors on the floor, which detect the movers on or between them
+// and cast no rays. Metres; the states are MatState and GateState in sense/reading.h.
 #pragma once
 
 #include <cstddef>

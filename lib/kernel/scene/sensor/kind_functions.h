@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Functions of SensorKind that several kinds share, those of extensions too.
+//
+// They require functions beside the parameters: withParameters(Parameters, const Record&), and
+// fieldOfView(const Parameters&, const Pose3&).
+//
+//     const SensorKind Sonar::kKind = {.keyword = "sonar", .read = readModel<Sonar>, /* ... */};
 #pragma once
 
 #include <utility>

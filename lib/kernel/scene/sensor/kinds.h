@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of kinds, from which the tables of all folders follow.
+//
+//     const SensorModel model = modelOf(Laser());
+//     if (const Laser* const laser = tryModel<Laser>(model)) beams += laser->beams;
 #pragma once
 
 #include <type_traits>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Planar laser range finders: the angles and times of their beams. Bearings are in the sensor's
+// frame, counter-clockwise. Counts of steps allow for kStepTolerance, so that 180 degrees by 0.1
+// are 1801 beams. Values and pure functions, O(1).
+//
+//     Laser laser;                                    // 181 beams over 180 degrees
+//     const Angle ahead = laser.bearing(90);          // 0
+//     laser.spin = 10;                                // turns a second
+//     const double last = laser.timeOf(180);          // 0.05 s behind beam 0
 #pragma once
 
 #include <cstddef>

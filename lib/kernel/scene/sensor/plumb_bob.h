@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lens distortion of pinholes by radial and tangential terms (D. C. Brown, Decentering distortion
+// of lenses, 1966), in units of the focal length. Closed forms, for doubles and for intervals
+// (geom/interval.h); bounds over a box are wider than the values in it, as each coordinate occurs
+// several times.
 #pragma once
 
 #include <array>

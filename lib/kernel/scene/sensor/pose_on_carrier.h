@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Poses of sensors on people and on joints, for scenes. Metres; sensors keep their poses in the
+// frame of the carrier, and move with it.
 #pragma once
 
 #include "geom/pose.h"

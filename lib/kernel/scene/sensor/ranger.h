@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// 3-D range cameras and turning scanners: the rays of their pixels. Pure functions, O(1);
+// sense/depth.h takes their pictures.
+//
+//     const Ranger ranger;                            // 176 x 144 pixels
+//     const Vec3 axis = ranger.ray(87.5, 71.5);       // (1, 0, 0): through the optical centre
 #pragma once
 
 #include <cstddef>

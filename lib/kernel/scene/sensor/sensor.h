@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/scene/sensor: the kinds of sensors, each a row and a source: keyword, keys,
 // parameters, body, field of view. Uses env and below.
+//
+// The table of kinds is constant once scenes are read; functions of a kind depend on their
+// arguments alone and may be called by several threads. The list of core kinds and its rows are
+// fixed at compile time, kinds of extensions are added by one thread before that.
+//
+//     if (const std::optional<FieldOfView> view = fieldOfView(sensor)) reach = view->farthest();
+//     if (const Laser* const laser = sensor.tryAs<Laser>()) beams += laser->beams;
 #pragma once
 
 #include <any>
@@ -182,7 +189,7 @@ struct SensorKind {
 };
 
 /// Adds a kind, for the program: call it before any scene is read. Its records are placements,
-/// which scan reads, run and record as those of other kinds.
+/// which scan reads, run and record as those of other kinds. A second kind of a keyword is ignored.
 /// \param kind kKind of its parameters, see AddedSensor; it outlives all scenes
 /// \pre if it is read, it has `measure` and `reading`
 void addSensorKind(const SensorKind& kind);
@@ -190,7 +197,7 @@ void addSensorKind(const SensorKind& kind);
 /// Returns the kinds of Scene::sensors, in the order in which reports list them: all but those on
 /// the floor.
 std::span<const SensorKind* const> sensorKinds();
-/// Finds the kind of Scene::sensors with this keyword; null for any other.
+/// Finds the kind of Scene::sensors with this keyword; null for any other. O(kinds)
 const SensorKind* sensorKind(std::string_view keyword);
 /// Returns the kind of a model.
 const SensorKind& kindOf(const SensorModel& model);

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Keys that the records of several sensors share, and the errors of their ranges. withParameters()
+// of a kind reads the device's record first and then the sensor's own, so that written keys win.
+//
+//     Laser laser = parametersOf<Laser>(record, deviceOf(record, devices));
 #pragma once
 
 #include <array>

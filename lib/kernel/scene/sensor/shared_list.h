@@ -9,6 +9,7 @@
 namespace ispace {
 
 /// A constant list that copies share, as those of a scene's lamps that all its light meters hold.
+/// O(1) to copy; thread-safe as const objects are.
 template <typename T>
 class SharedList {
   public:

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Ultrasonic receivers and the tags that they hear: parameters, and the cone of hearing.
+// sense/ultrasound_burst.h simulates their bursts, sense/locate.h computes positions from them.
 #pragma once
 
 #include <cstddef>
