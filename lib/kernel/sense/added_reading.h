@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Readings of kinds that extensions add, behind one type: a value that the kind's `measure`
+// returned, and its time and pose. Copies copy the value.
 #pragma once
 
 #include <any>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures of rangers, a ray for each pixel. Limits, ambiguity and noise apply to what the ranger
+// measures: depths, or distances along rays, which are stored as multiples of the rays either way.
+// Thread-safe; O(pixels) rays and 4 bytes a pixel.
+//
+//     const DepthFrame frame = castDepth(worlds.mesh(), bodies, sensor, sensor.pose, 0, {});
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Movers that sensors see at one moment: the same regions as those of `coverage`, asked point by
+// point with a ray each.
+//
+//     const DetectionMonitor monitor(scene, {.plane = 1.2});
+//     const std::size_t sensors = monitor.seenBy({.place = {2, 1}});
 #pragma once
 
 #include <cstddef>
@@ -45,7 +50,8 @@ struct WatchMoment {
 /// Sensors mounted on a mover move with it and do not see it.
 class DetectionMonitor {
   public:
-    /// Prepares the sensors. The scene must outlive it.
+    /// Prepares the sensors, and the slices and meshes that their rays need. The scene must outlive
+    /// it. \throws as RayWorld::ofEnvironment()
     explicit DetectionMonitor(const Scene& scene, const WatchOptions& options = {});
     ~DetectionMonitor();
     DetectionMonitor(DetectionMonitor&&) noexcept;
@@ -63,7 +69,8 @@ class DetectionMonitor {
     };
     /// Returns the number of sensors that see the target now. Thread-safe.
     [[nodiscard]] std::size_t seenBy(const Target& target, const WatchMoment& moment = {}) const;
-    /// The same for each target, in parallel: much faster for many than one after another.
+    /// The same for each target, in parallel: much faster for many than one after another. A ray
+    /// for each sensor in whose range and field of view the target lies. Thread-safe.
     [[nodiscard]] std::vector<std::size_t> seenBy(std::span<const Target> targets,
                                                   const WatchMoment& moment = {}) const;
 

@@ -127,9 +127,7 @@ Starts startsOf(const Layout& layout, std::span<const double> distances) {
         mean_square -= less / count;
         right += layout.places[i] * (less / 2 / count);
     }
-    //
-    // x
-    // ^2 = mean_square, and in the plane's axes each coordinate is independent.
+    // The square of |x| is mean_square, and in the plane's axes each coordinate is independent.
     const Vector3d along = layout.axes.transpose() * right;
     const Vector3d in_plane = layout.axes.col(1) * (along[1] / layout.spread[1]) +
                               layout.axes.col(2) * (along[2] / layout.spread[2]);

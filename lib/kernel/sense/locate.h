@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Positions from distances to known points (multilateration), as of ultrasonic receivers and UWB
+// anchors.
+//
+// Least squares on each side of the plane of the receivers, by at most 200 steps of the method of
+// Levenberg and Marquardt from two or three starts: each candidate is a local minimum, whose
+// rounding error is taken as 1e-6 of the distances. Dilution of precision is that of satellite
+// navigation (R. B. Langley, Dilution of precision, 1999). Pure function, O(receivers); metres.
+//
+//     const std::optional<PositionFix> fix = locate(heard);  // a std::vector<Hearing>
+//     if (fix && fix->pdop < 5) place = fix->position;
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A sensor and its surroundings at one time: all that a reading depends on.
+//
+// A kind computes its reading from these values alone, without state, so that readings may be taken
+// in any order. Members refer to data of the caller, valid while the reading is taken.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +21,7 @@ namespace ispace {
 
 class UwbFixes;
 
+/// Conditions of all readings of a run.
 struct TakerOptions {
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise
     double celsius = 20;                           ///< of the air, for the speed of sound

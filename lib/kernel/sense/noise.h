@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The errors of measured ranges, as RangeNoise describes them, in float32. A draw belongs to seed,
+// sensor, frame and number of the beam: a sensor that is added changes the noise of no other, and a
+// reading can be taken again. Thread-safe for different ranges; O(ranges), of which blocks without
+// return are skipped.
+//
+//     const NoiseKey key{.seed = 1, .sensor = hashOf("front"), .frame = 7};
+//     addNoise(laser.noise, laser.min_range, laser.max_range, key, {}, ranges);
 #pragma once
 
 #include <array>
@@ -31,9 +38,9 @@ struct NoiseKey {
 /// A return is lost with probability p = d + (1 - d) g: d is noise.dropout; g rises linearly with
 /// the angle between beam and normal from 0 at graze_from to 1 at graze_to, or jumps there if both
 /// are equal. p is rounded to steps of 2^-24. A multiple of the resolution is the float32 nearest
-/// to n * resolution, the value that its decimal notation reads as. \param cosines
-/// cosine
-/// of the angle between beam and normal for each range, empty unless noise.dropsByIncidence()
+/// to n * resolution, the value that its decimal notation reads as.
+/// \param cosines cosine of the angle between beam and normal for each range, empty unless
+///        noise.dropsByIncidence()
 void addNoise(const RangeNoise& noise, double min_range, double max_range, const NoiseKey& key,
               std::span<const float> cosines, std::span<float> ranges);
 

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Readings of sensors of all kinds. A reading depends on its job and on the seed alone: jobs may be
+// taken in any order, on any thread, and again.
+//
+//     ReadingSampler taker(sensors, worlds, bodies, {.noise_seed = 1});
+//     const ReadingJob job{.sensor = 0, .pose = sensors.read[0].pose, .way = {}};
+//     taker.prepare(job);                          // one thread
+//     const Reading reading = taker.take(job);     // any thread
 #pragma once
 
 #include <cstddef>
@@ -76,7 +83,8 @@ bool isReadAtOnce(const SensorModel& model);
 /// that stop its rays are prepared if isReadAtOnce(sensor.model)
 Reading readAtOnce(const Moment& moment);
 
-/// Takes readings in any order on any thread; each depends only on its job.
+/// Takes readings in any order on any thread; each depends only on its job. Each thread keeps the
+/// beams of the lasers that it has read.
 class ReadingSampler {
   public:
     /// Prepares the sensors. \pre all arguments outlive it

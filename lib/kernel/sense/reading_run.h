@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of readings: sources of jobs, and a pipeline that takes them on all cores and writes them in
+// order. Bytes are the same for any number of threads. Two batches a core are in flight at most,
+// fewer if pictures are so large that they would take more than 2 GiB.
+//
+//     StillSource source(sensors, 100);  // 100 frames of each sensor
+//     runReadings(source, taker, sensors, *format, Packing::Stream, Coordinates::World, progress,
+//                 [&](Readings& some) { out += some.text; });
 #pragma once
 
 #include <cstdint>
@@ -87,7 +94,7 @@ class RoomParts final : public ReadingSource {
 /// Appends more bytes to a buffer; returns false at the end of the file.
 using ByteReader = std::function<bool(std::string& buffer)>;
 
-/// Reads the poses of a TUM trajectory, line by line.
+/// Reads the poses of a TUM trajectory, line by line; lines of more than 4096 bytes are rejected.
 class PoseLines {
   public:
     /// `name` is the file's name in messages.
@@ -161,7 +168,8 @@ std::size_t batchSize(const Sensors& sensors);
 
 /// Takes all readings of a source on all cores and passes them to `write` in order, from one thread
 /// at a time. Memory is bounded by the number of cores, not of jobs. If the source fails, all
-/// readings before the error are still written.
+/// readings before the error are still written, then its exception is thrown. If `write` fails, no
+/// further readings are written.
 /// \param site_from_room level, the frame of the jobs and of the readings written; null: that of
 /// the room, in which the taker reads
 void runReadings(ReadingSource& source, ReadingSampler& taker, const Sensors& sensors,

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/sense: sensors and the formats of their readings. Uses trace, drawing; TBB inside.
+//
+// Scans of planar lasers. A beam ends at the first surface or moving body, whichever is nearer, as
+// exactly as RayWorld and MovingBodies say; ranges are float32 metres. Noise is drawn by seed, id
+// and frame, so that a scan depends on pose, time and key alone, on any number of threads.
+//
+//     RayScenes worlds(scene.environment);
+//     worlds.prepare(laser.pose);
+//     LaserCaster caster(worlds, bodies, laser, false, {.noise_seed = 1});
+//     Scan scan{.frame = 7, .pose = laser.pose};
+//     caster.cast(scan);  // O(beams) rays
 #pragma once
 
 #include <cstdint>
@@ -57,7 +67,9 @@ class ScanPlane {
 };
 
 /// The points that the scans of a laser cross, ignoring obstacles, while the laser changes one
-/// angle of its pose continuously.
+/// angle of its pose continuously. A point lies in the scan plane at two angles at most, the roots
+/// of a cos s + b sin s + c = 0, or at all of them: a closed form, O(1). Edges of the window and of
+/// the sweep count, within kUnitTolerance. Const members are thread-safe.
 class SweptScan {
   public:
     /// Prepares the sweep. \pre placed.as<Laser>().sweep is not None
@@ -105,7 +117,7 @@ struct Scan {
 };
 
 /// Unit vectors of lasers' beams in the lasers' frames, shared by all lasers with equal beams:
-/// separate copies for thousands of lasers would not fit the processor's cache.
+/// separate copies for thousands of lasers would not fit the processor's cache. Not thread-safe.
 class LocalBeams {
   public:
     /// Returns the vectors of a laser's beams; z is 0.

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors that a run reads, and the bodies that block their rays: the start of a scene, in its
+// order.
+//
+//     const Sensors sensors = sensorsOf(scene, {"front-*"});
+//     const MovingBodies bodies(bodiesOf(scene));
 #pragma once
 
 #include <cstddef>
@@ -32,7 +37,8 @@ std::vector<std::size_t> sensorRecords(const Scene& scene, std::span<const std::
 /// True if an id matches one of the globs (* ? [a-z]), or `globs` is empty.
 bool isSelected(const std::string& id, const std::vector<std::string>& globs);
 
-/// Rounds seconds to whole nanoseconds, which print short.
+/// Rounds seconds to whole nanoseconds, which print short; from 9e6 s on, where doubles are
+/// coarser, returns them unchanged.
 double wholeNanoseconds(double seconds);
 
 /// Returns the robots and people of a scene at their start. The owner of a robot's body is its

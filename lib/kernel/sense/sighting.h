@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The movers that a sensor with a field of view sees.
+//
+// A ray for each body in view, by the bodies near the sensor: O(bodies in range) rays. Sightings
+// depend on bodies and observer alone, and come in the order of the bodies. Thread-safe.
+//
+//     const auto all = [](std::uint32_t) { return true; };
+//     for (const Sighting& one : sightingsOf(observer, worlds.mesh(), bodies, all))
+//         nearest = std::min(nearest, one.range);
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sensors of several rooms in one run.
+//
+// Sensors of all rooms are numbered one room after another, so that formats and runs know one list;
+// SensorRoom tells where a room's part ends.
 #pragma once
 
 #include <cstddef>
@@ -31,6 +34,7 @@ std::size_t roomOf(std::span<const SensorRoom> rooms, std::size_t sensor);
 std::span<const Sensor> receiversIn(std::span<const SensorRoom> rooms, std::size_t room,
                                     const Sensors& sensors);
 
+/// The sensors of several rooms as one list, and the rooms.
 struct SiteSensors {
     Sensors sensors;
     std::vector<SensorRoom> rooms;  ///< at least one
@@ -42,7 +46,8 @@ struct SiteSensors {
 SiteSensors sensorsOf(std::span<const std::shared_ptr<const Scene>> scenes,
                       std::span<const std::string> ids, const std::vector<std::string>& globs);
 
-/// Converts a pose of the outer frame to an inner one. \param outer_from_inner level
+/// Converts a pose of the outer frame to an inner one. Headings are differences of degrees, not
+/// reduced to a turn. \param outer_from_inner level
 Pose3 toInner(const Pose3& outer_from_inner, const Pose3& pose);
 /// Converts a pose of an inner frame to the outer one.
 Pose3 toOuter(const Pose3& outer_from_inner, const Pose3& pose);

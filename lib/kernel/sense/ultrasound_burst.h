@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bursts of tags, and the receivers that hear them in line of sight. Sound takes the straight way:
+// no echoes, no wind. O(receivers) rays; thread-safe.
+//
+//     const RayWorld& walls = worlds.mesh(Surfaces::Solid);  // glass stops sound
+//     const Burst burst = castBurst(walls, bodies, tag, receivers, 0, 0, {.celsius = 22});
 #pragma once
 
 #include <cstddef>
@@ -17,7 +22,8 @@ namespace ispace {
 
 struct ReadingKind;
 
-/// Returns the speed of sound in dry air in m/s: 331.3 + 0.606 T for T degrees Celsius.
+/// Returns the speed of sound in dry air in m/s: 331.3 + 0.606 T for T degrees Celsius, within 0.3
+/// % of that of an ideal gas, 331.3 sqrt(1 + T / 273.15), from -20 to 40 degrees.
 double speedOfSound(double celsius);
 
 /// One receiver's measurement of one burst.
@@ -50,6 +56,7 @@ struct Hearings {
     static const ReadingKind kKind;
 };
 
+/// Air and errors of a burst.
 struct UltrasoundOptions {
     double celsius = 20;
     std::optional<std::uint64_t> noise_seed = {};  ///< empty: no noise

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values of fields, for the tables of kinds.
+//
+// A table names a field, the formats that write it, and a function of this file as its value:
+//
+//     constexpr ReadingField kFields[] = {
+//         {"rate", kInInfo, fields::figure<Laser, &Laser::rate>},
+//         {"last", kInJson, fields::measured<GateState, &GateState::last_in>}};
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Point clouds of depth pictures and scans, and their files: PCD 0.7 of the Point Cloud Library (R.
+// B. Rusu, S. Cousins, 3D is here: Point Cloud Library (PCL), 2011) and PLY 1.0 (G. Turk, The PLY
+// polygon file format, 1994).
+//
+// Coordinates are float32: 1 mm at 10 km from the origin. Equal clouds give equal bytes.
+// Thread-safe but for CloudStream; O(points).
+//
+//     const PointCloud cloud = cloudOf(ranger, frame, Coordinates::World);
+//     writeAll("room.pcd", pcdOf(cloud, Encoding::Binary));
 #pragma once
 
 #include <cstddef>
@@ -61,7 +70,8 @@ struct CloudRows {
 
 /// Writes concatenated clouds to one file. Stores rows if all have equal width; else drops points
 /// without return and stores one row. Points are not held in memory: they are written at once if
-/// the header is known, else to a Spool; PLY with rows requires one bit a point.
+/// the header is known, else to a Spool; PLY with rows requires one bit a point, and numbers less
+/// than 2^31 points.
 class CloudStream {
   public:
     /// \param width points of each row of all clouds, or 0 if widths differ

@@ -2,6 +2,12 @@
 // lib/kernel/sense/formats: the table of readings: the quantities that each kind of sensor
 // measures, and their names. Formats, records, protocol and page read the table and do not depend
 // on kinds.
+//
+// A field is a row: name, formats, and a function of the reading. Tables are constant and
+// thread-safe; values are computed when a format asks.
+//
+//     for (const ReadingField& field : readingKind(sensor.model).fields)
+//         if ((field.uses & kInJson) != 0) names.push_back(field.name);
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The interface of reading formats, their shared base, and constructors of formats in separate
 // files.
+//
+// Formats are deterministic: equal readings give equal bytes, without times of writing. Pieces are
+// made by several threads (append(), files()) and joined in order by one (ReadingStream).
+//
+//     const std::unique_ptr<ReadingFormat> format = makeFormat("csv", sensors, {});
+//     std::string text = format->header();
+//     format->append(text, 0, reading);  // of sensors.read[0]
 #pragma once
 
 #include <cstddef>
@@ -90,6 +97,7 @@ struct ReadingDrawings {
                           std::optional<DepthSpectrum> spectrum);
 };
 
+/// Choices of all formats; each reads those that concern it.
 struct FormatOptions {
     History history;
     std::uint64_t seed = 0;
@@ -114,7 +122,7 @@ struct FormatOptions {
 std::vector<std::string> readingFormats();
 
 /// Creates a format. \throws UsageError for sensors that the format cannot hold
-/// \pre the name is one of readingFormats()
+/// \pre the name is one of readingFormats(); `sensors` outlive the format
 std::unique_ptr<ReadingFormat> makeFormat(std::string_view name, const Sensors& sensors,
                                           FormatOptions options);
 

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Text of readings: JSON lines (RFC 8259), CSV (RFC 4180) and the logs of CARMEN (M. Montemerlo, N.
+// Roy, S. Thrun, Perspectives on standardization in mobile robot programming: the Carnegie Mellon
+// Navigation (CARMEN) toolkit, 2003). Functions append to a string and keep no state: thread-safe,
+// independent of the locale.
+//
+//     std::string out = scanHeaderLine(history, seed);
+//     for (const ReadingView& view : viewsOf(sensor, reading)) appendLine(out, view);
 #pragma once
 
 #include <cstddef>
