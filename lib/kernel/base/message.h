@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pieces of messages, reports and history lines. Input is untrusted: it is quoted as one printable
+// line of UTF-8 before it is shown. Pure functions; O(bytes), nearestWord() O(letters^2) a known
+// word.
+//
+//     throw UsageError("unknown key " + excerpt(key) + didYouMean(key, known));
 #pragma once
 
 #include <cstddef>

@@ -266,7 +266,8 @@ char* writeStripped(char* to, std::uint64_t number, int decimals) {
     return writeScaled(to, number, decimals);
 }
 
-/// Writes the shortest text that reads back as the same value.
+/// Writes the shortest text that reads back as the same value, of these the nearest to it (the
+/// output of G. L. Steele, J. L. White, How to print floating-point numbers accurately, 1990).
 ///
 /// It is the multiple of 10^-d nearest to the value, with the least d for which it is nearer to the
 /// value than half way to a neighbour. Distances are compared as integers, exactly: a mantissa

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The choice of the user to read files without a sandbox, --unconfined: one value for the process,
+// written before threads start.
 #pragma once
 
 namespace ispace {

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Text files that zstd has compressed, written and read while they grow; `zstd -d` unpacks them.
+//
+//     ZstdPacker packer;
+//     file.write(packer.pack(line));  // readable up to here
+//     file.write(packer.end());
 #pragma once
 
 #include <memory>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps of measureCoverage(), which reports reuse.
+//
+// Exact figures are sums over the faces of one overlay of all views: the marks of a face stand for
+// floor and zones, its count and numbers for the sensors that see it. Zones beyond kZonesAtOnce
+// need further overlays. Figures by cells are counts of bits.
 #pragma once
 
 #include <bit>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells of level views by scanlines: the outline is filled exactly (Scanline), rows are cut at the
+// range as withinRange() compares it, and at each limit by its cotangent; within 1e-6 columns of a
+// centre the limit's cross product decides. O(query + rows * limits + runs).
 #include "coverage/sector_cells.h"
 
 #include <algorithm>

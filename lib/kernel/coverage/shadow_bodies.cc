@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Shadows are central projections of triangles. A point between sensor and plane is (x, y, share),
+// its shadow (x, y) / share: triangles are clipped in these homogeneous coordinates before the
+// division (J. F. Blinn, M. E. Newell, Clipping using homogeneous coordinates, 1978), so that parts
+// beside and above the sensor do not turn over. Edges that triangles of a body share cancel out
+// exactly, as both clip them at the same points.
 #include "coverage/shadow_bodies.h"
 
 #include <algorithm>

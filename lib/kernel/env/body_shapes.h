@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bodies of elements that extensions bring.
+//
+// One thread adds them before any scene is read; from then on they are constant, and the functions
+// below are thread-safe.
 #pragma once
 
 #include <string>
@@ -11,7 +14,8 @@
 namespace ispace {
 
 /// Adds the body of the records of a keyword that an extension brings, for the program: call it
-/// before any scene is read.
+/// before any scene is read. bodyOf() calls it, also from several threads: it depends on its record
+/// alone.
 void addBodyShape(std::string_view keyword, Body (*body)(const Record& record));
 
 /// Names the key of the records of things for the id of the person that carries it, and that of

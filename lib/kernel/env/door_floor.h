@@ -26,9 +26,10 @@ class DoorFloor {
     explicit DoorFloor(const Environment& environment);
 
     /// Returns the outline, counter-clockwise. Rounded ends have 16 chords a quarter circle.
-    /// Without walls about the door it is floorAround(). Among n wall lines within the distance it
-    /// takes O(n²), up to 400 of them; beyond that the outline follows walls by rays along the
-    /// chords alone, and takes O(n).
+    /// Without walls about the door it is floorAround(). Rays pass the ends and crossings of up to
+    /// 100 wall lines within the distance at 0.1 micrometres on either side: O(n²) for n lines that
+    /// cross now and then. Beyond that the outline follows walls by rays along the chords alone,
+    /// and takes O(n). Corners within 10 micrometres of each other are one. Thread-safe.
     [[nodiscard]] Polygon around(const Doorway& of, double distance) const;
 
   private:

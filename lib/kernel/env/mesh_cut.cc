@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts meshes by level planes: a triangle with corners on both sides gives an arc from edge to
+// edge, and arcs are joined over the edges that triangles share, never by distance. Vertices at the
+// height count as above or below by an infinitesimal shift (H. Edelsbrunner, E. P. Mücke,
+// Simulation of simplicity, 1990), so that no case is degenerate. A crossing is rounded once, from
+// the lower index on, and is the same in all triangles of its edge.
 #include "env/slice.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Light of projectors on surfaces: by the solid angle that a surface takes from the lens, and the
+// cosine of its slant (J. H. Lambert, Photometria, 1760). Distances count from the lens as a point;
+// nearer than a centimetre before it there is no light. Lux, lumens; pure functions, O(1).
+//
+//     if (const auto beam = projectorBeam(record))
+//         if (const auto spot = beam->spotAt(place, normal)) lux += spot->lux;
 #pragma once
 
 #include <optional>

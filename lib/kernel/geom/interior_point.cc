@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Finds points well inside regions among the middles of chords on scanlines, level and upright: 24
+// scanlines halfway between vertices and 24 at even steps, three chords of each. Their distances
+// from the boundary are compared, those with the longest chords first, as half of a chord bounds
+// the distance; edges are looked up in bands of height. Only the exact locate() decides that a
+// point is inside.
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 

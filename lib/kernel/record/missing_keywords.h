@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Words of extensions that a program was built without, for messages. Added by one thread before
+// records are read; constant and thread-safe from then on.
 #pragma once
 
 #include <string_view>

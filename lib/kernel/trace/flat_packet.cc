@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Packets of rays of similar directions traverse the tree together (I. Wald et al., Interactive
+// rendering with coherent ray tracing, 2001): a box about their origins and a cone about their
+// directions skip nodes and lines, with slack for rounding. Each ray is decided in doubles by
+// flat_kernels.h, so that results do not depend on its packet.
 #include "trace/flat_kernels.h"
 
 #include <algorithm>

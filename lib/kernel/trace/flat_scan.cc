@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Scans as pictures with one row: lines are drawn into blocks of eight beams, each with the
+// farthest range in it, so that boxes and lines behind that are skipped, as by a hierarchical
+// z-buffer (N. Greene, M. Kass, G. Miller, Hierarchical Z-buffer visibility, 1993). Angles in
+// float32 with kSlack choose the blocks; each beam is decided in doubles by flat_kernels.h, as
+// single rays are.
 #include "trace/flat_kernels.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Level rays against the plan at one height: RayWorld::ofSlice() is built of it.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Restricts programs that read untrusted bytes; base/confined.h starts them.
+//
+// Rights are given up before the first byte of the file is read, and never come back. A reader that
+// is taken over can compute, read what it was handed, and answer its parent.
+//
+//     int main(int argc, char** argv) {
+//         return runConfined(argc, argv, kMost, [](std::size_t size, Budget& work) {
+//             const MappedInput input(size);
+//             return packed(parse(input.bytes(), work));
+//         });
+//     }
 #pragma once
 
 #include <cstddef>
