@@ -39,8 +39,8 @@ class VisibleArea {
                 double reach = std::numeric_limits<double>::infinity())
         : environment_(environment), plane_(plane), worlds_(worlds), reach_(reach) {}
 
-    /// Keeps the regions of sensors that scan no slice, for calls with equal models and poses.
-    /// \pre no call has been made
+    /// Keeps the regions of sensors that scan no slice, for calls with equal models and poses: up
+    /// to 20 000 of them. \pre no call has been made
     void keepRegions();
 
     /// Builds the world for sensors of the same model, height, tilt and roll. One thread must call

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Slices go through all elements, O(parts), and through meshes by mesh_cut.cc. Levels are cached by
+// height, the latest at the end; one that was evicted while a caller holds it is found again by a
+// weak pointer, so that no height has two levels at once.
 #include "env/environment.h"
 
 #include <algorithm>

@@ -4,8 +4,9 @@
 //
 // An environment is immutable, and all that is derived from it (levels, regions, indexes) depends
 // on the records alone, whichever thread asks first. The index of the indoor region and the digest
-// are computed once, levels are cached while they are few, slices are computed at each call.
-// Metres, x-y floor, z up. Copies cost two counters; an edit shares all that it does not change.
+// are computed once, the latest levels are cached (64, with up to half a million lines), slices are
+// computed at each call. Metres, x-y floor, z up. Copies cost two counters; an edit shares all that
+// it does not change.
 //
 //     const Environment room(records, assignIds(records));
 //     const double area = room.indoor().area();                // m2

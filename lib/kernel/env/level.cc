@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of levels are computed by the first caller. That may be one of many tasks of a parallel
+// loop: uncancelled() keeps an exception in another task from cutting short the part that is
+// stored. Levels whose slices are equal share one Cut, found by comparing slices.
 #include "env/level.h"
 
 #include <tbb/parallel_invoke.h>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Chooses among three ways to the same bits: beams at even steps are drawn as a scan
+// (flat_scan.cc), rays of similar directions are traced in packets whose size adapts to how near
+// they lie (flat_packet.cc), and others alone, by the traversal here. A ray passes a box if corners
+// lie on both of its sides within slackOf(), more than rounding; so boxes are never missed.
 #include "trace/flat_world.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies are found by FloorGrid: cells are at least as wide as two bodies' reaches, and at most 2 n
+// + 1, however far apart bodies are; lists lie in one array, filled by counting. Candidates come by
+// cell, then by number; each keeps the nearer range, so that their order does not matter.
 #include "trace/moving_bodies.h"
 
 #include <algorithm>

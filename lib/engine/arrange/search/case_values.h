@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The values of a layout in the cases of a WorstCaseProblem. Whole numbers, exact. Failures are
-// judged by the distinct sets of sensors that see floor, of which there are far fewer than cells.
+// The values of a layout in the cases of a WorstCaseProblem: whole numbers, exact in units of a
+// block, and rounded down to those of the first. Failures are judged by the distinct sets of
+// sensors that see floor, of which there are far fewer than cells.
 //
 //     const CaseValues values(of, solution.chosen);
 //     const CaseValue worst = values.worst();

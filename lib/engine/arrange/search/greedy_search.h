@@ -3,7 +3,9 @@
 //
 // A state keeps the multiplicity of each cell, so that a sensor is added or removed in the time of
 // its runs, and the gain of every candidate follows from one prefix sum of the cells' gains. The
-// finder weighs few sites: gains never grow as sensors are added, so an old gain bounds a new one.
+// finder weighs few sites. Partial gains never grow as sensors are added, so an old one bounds a
+// new one; full gains grow where cells require several sensors, and have bounds that hold at any
+// time (SearchBasis::site_full).
 #pragma once
 
 #include <cstddef>

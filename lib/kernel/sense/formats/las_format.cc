@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// LAS 1.4 and 1.3 (American Society for Photogrammetry and Remote Sensing, LAS Specification 1.4,
+// 2011), point format 1. Coordinates are whole tenths of a millimetre, up to 214 748 m from the
+// origin; the point source is the number of the sensor from 1, and a text record maps numbers to
+// ids. Points wait in a Spool for the header, which holds their number and bounds; memory does not
+// grow with them.
 #include <algorithm>
 #include <array>
 #include <cmath>
