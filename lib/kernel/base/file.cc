@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An output is an unnamed file (O_TMPFILE) in the folder of its target, which vanishes with the
+// process; commit() links it to a name and renames that over the target. Where the system has no
+// such files it is named from the start. A set of files keeps second links to the old ones until
+// all are renamed, so that a failure restores them.
 #include "base/file.h"
 
 #include <fcntl.h>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells of a plane by rays. A cell gets a ray if its centre is in some view, which is decided for
+// blocks of 8 x 8 cells at once, halved where a view is unsure, or by the table of turned views.
+// Rays of several rows are cast together, as packets need many; bands of rows run in parallel, and
+// each view's runs are joined in the order of the bands.
 #include "coverage/plane_cells.h"
 
 #include <tbb/blocked_range.h>

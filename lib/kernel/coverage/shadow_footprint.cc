@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A field of view cut by a level plane: half planes through the sides of a pyramid, a disc for the
+// range, and conics for cones, whose points follow from the angle about the axis in closed form.
+// Curves that leave the disc about the foot are closed beyond it. The region seen is the overlay of
+// these with the shadows; for a plane through the sensor, where shadows are unbounded, a visibility
+// polygon stands for them.
 #include "coverage/shadow_footprint.h"
 
 #include <algorithm>

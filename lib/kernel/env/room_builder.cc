@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Large rooms are built by several tasks at once, which stop at their first findings. A room with
+// findings is then built again step by step, so that messages and their order do not depend on
+// threads; only broken rooms pay for it.
 #include "env/room_builder.h"
 
 #include <algorithm>

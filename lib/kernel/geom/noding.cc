@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts lines where they meet, in rounds, by iterated snap rounding (D. Halperin, E. Packer,
+// Iterated snap rounding, 2002). Each round finds pairs of lines by a grid of cells, or by a tree
+// where cells are crowded. Lines of a crowded cell that share an end are compared with their
+// neighbours by direction alone, so that a star of n lines takes O(n log n) unless they nearly
+// coincide. Two lines that touch at an end within the reach are cut there; others are cut where
+// they cross, a point rounded from the same ends whichever way the lines run.
 #include "geom/arrangement.h"
 
 #include <algorithm>
