@@ -12,7 +12,7 @@ namespace ispace {
 /// an input again when one of the names appears:
 ///
 ///     const MissedFiles missed;
-///     const Environment room = readEnvironment("room.env");
+///     const Document room = read("world.sdf");
 ///     watch(missed.names());
 class MissedFiles {
   public:

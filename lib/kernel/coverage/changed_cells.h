@@ -21,8 +21,7 @@ namespace ispace {
 /// a whole view.
 ///
 ///     if (const auto changed = ChangedBodies::between(before, after))
-///         const CellChanges cells = changesIn(changed->shadowsOn(grid, eye, 0), grid, mesh, view,
-///         0, seen);
+///         return changesIn(changed->shadowsOn(grid, eye, 0), grid, mesh, view, 0, seen);
 class ChangedBodies {
   public:
     /// Empty unless Environment::changesSince() compares the two.

@@ -6,8 +6,8 @@
 // estimated from nearby surfaces, samples smoothed but never across edges. Bytes are the same for
 // any number of threads and for bands; random numbers are keyed by pixel and seed.
 //
-//     const RenderScene scene(readScene("room.3dm"));
-//     const Rendering picture = render(scene, CameraView(camera, pose), {.samples = 9});
+//     const RenderScene room(scene);
+//     const Rendering picture = render(room, CameraView(camera, pose), {.samples = 9});
 //     const std::vector<std::uint8_t> bytes = toSrgb8(picture);
 #pragma once
 
