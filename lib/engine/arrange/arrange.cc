@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The order of a search: candidates, choice, refinement, proof, and the figures of the result.
+//
+// The search chooses by cells of its own grid; coverage and area are then measured anew, as
+// `coverage` measures them, for the written poses. Sensors that
+// add no value are spread over the floor after the search, not left where greedy search put them.
+// Privacy is a loop about all this: cells may miss parts of a zone that the exact region of a
+// camera meets, so poses that do are forbidden, and the search begins again.
 #include "arrange/arrange.h"
 
 #include <algorithm>

@@ -1,6 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/arrange: generates candidates and searches for arrangements. Uses coverage, trace and
 // below; TBB and CGAL inside.
+//
+// Arranging takes four steps. A strategy proposes sites, each with headings (strategy.h), and rules
+// reject some of them (placement_rules.h). The cells that a sensor sees from each remaining pose
+// are computed once (candidate.h). Their choice is a weighted coverage problem without geometry
+// (search/search.h), to which coverage_model.h maps rooms and sensors. On request sensors then
+// leave their candidates (refine.h).
+//
+// Guarantees. `coverage` and `area` of a result are those that `coverage` prints for the written
+// layout, on its grid. No layout of the same candidates has a value above `bound`; poses between
+// candidates may, unless sensors were refined or a Prover is set. The result depends on input,
+// options and seed alone, for any number of threads and shards, unless progress says stop: then it
+// is the best layout so far, and `is_complete` is false.
+//
+// Costs. The views of candidates take most of the time and memory: sites * headings views, 4 bytes
+// for a run of cells. Candidates and the tree of Exact share options.max_bytes.
+//
+// Metres; poses are in the frame of their room.
+//
+//     const std::vector<SensorGroup> groups = groupsToPlace(scene, specs, devices, false);
+//     ArrangeOptions options;                  // as arrange(1) without options
+//     options.target = 0.95;                   // fewest sensors that see 95 % of the floor
+//     const Arrangement found = arrange(scene, groups, options, progress);
+//     if (found.is_reached) write(layoutDocument(parts, nullptr, groups, found));
 #pragma once
 
 #include <cstddef>
@@ -62,13 +85,14 @@ constexpr double kBelowCeiling = 0.05;
 /// Height at which overhead kinds hang on walls, metres; less in lower rooms.
 constexpr double kOnWall = 2.4, kBelowWallTop = 0.1;
 
+/// Heights, tilts and floor of the sensors to be placed. Lengths are metres.
 struct MountRules {
     /// Empty: the ceiling for overhead kinds (walls with Strategy::Wall), the floor for all others.
     std::optional<MountOn> on = {};
     std::vector<double> heights = {};  ///< to choose from; empty: the defaults of the mount
     /// Choices for sensors without a given tilt; empty: the defaults of the mount.
     std::vector<Angle> tilts = {};
-    double clearance = 0;
+    double clearance = 0;  ///< least distance from walls and objects, see SiteRules
     std::vector<NamedZone> keep_out = {}, keep_in = {};
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
 };
@@ -93,6 +117,7 @@ struct ObjectiveChoice {
 
 struct Arrangement;
 
+/// A search, apart from rooms and sensors. The defaults are those of arrange(1).
 struct ArrangeOptions {
     Strategy strategy = Strategy::All;
     std::optional<int> x, y;      ///< Grid: interior lines; default by eq. (4.1) and (4.2)
@@ -106,7 +131,7 @@ struct ArrangeOptions {
     MountRules mount;
 
     SearchOptions search;
-    bool refine = false;
+    bool refine = false;  ///< see mustBeRefinable() for sensors that cannot be refined
     FloorWeights weights;
     int redundancy = 1;  ///< a cell is covered if this many sensors see it
     bool is_connected = false;
@@ -126,7 +151,7 @@ struct ArrangeOptions {
     std::optional<double> target;  ///< share to reach at minimum cost
     /// Proves over more poses than the candidates; null: the bound of the search is enough.
     std::shared_ptr<const Prover> prover;
-    std::optional<double> budget;
+    std::optional<double> budget;  ///< limit of the sum of costs
     bool wants_curve = false, wants_trace = false, wants_gains = false;
     int alternatives = 0;  ///< number of further layouts, see Arrangement::alternatives
 
@@ -144,7 +169,7 @@ struct ArrangeOptions {
     /// Looks only at floor that standing sensors leave uncovered, which is faster. A sensor without
     /// a gain then stands anywhere, and connections are not known.
     bool is_for_gain_alone = false;
-    std::uint64_t seed = 0;
+    std::uint64_t seed = 0;  ///< of random sites, starts of swaps, mountings and crowds
 };
 
 /// Returns true if each sensor has separate candidates, and so forms a separate kind: Hierarchical
@@ -252,18 +277,27 @@ struct Arrangement {
 /// the job results and returns an arrangement without sensors.
 /// What the options ask of a room (weights, zones, rules of views) is taken from its goals; those
 /// of the options say whether it is asked of any room.
-/// \throws UnmetError if a kind has no valid site or the budget buys no sensor, UsageError if the
-///         candidates do not fit in memory, or for what is about one room alone
+///
+/// A target that is not reached is a result (is_reached), not an error. With rules of privacy, the
+/// search is repeated without the poses from which cameras see a zone, up to 100 times;
+/// Arrangement::privacy tells the rest. Sensors without gain stand apart from the others; their ids
+/// are in `idle`.
+///
+/// Once progress says stop, candidates are still made for some sites, within about 0.4 s, so that
+/// most interrupted searches return a layout.
+/// \throws UnmetError if a kind has no valid site, all floor weighs 0 or the budget buys no sensor,
+///         UsageError if the candidates do not fit in memory, for sensors that cannot be refined,
+///         or for options that need one room; FormatError naming stored results that are cut off
 Arrangement arrange(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);
-/// As above, for a room alone.
+/// As above, for a room alone: siteOf() of it.
 Arrangement arrange(const Scene& scene, const std::vector<SensorGroup>& groups,
                     const ArrangeOptions& options, Progress& progress, std::ostream* mps = nullptr);
 
 /// Returns the site of a room alone, with what the options ask of it. Stores the reference.
 ArrangeSite siteOf(const Scene& scene, const ArrangeOptions& options);
 
-/// Returns the option that is about one room alone, "" if all of these options hold for several.
+/// Returns the option that needs one room, "--proof art"; "" if all of these hold for several.
 std::string needsOneRoom(const ArrangeOptions& options);
 
 /// Contents of a layout besides the arrangement.
@@ -278,7 +312,8 @@ struct LayoutParts {
 };
 
 /// Builds a `.3dm`: the `environment` record, the records of `before` (if any) with its pending
-/// sensors placed, the new sensors, the `result`.
+/// sensors placed, the new sensors, the `result`. A pending sensor keeps its position, so that a diff
+/// of both layouts shows poses alone. Shares are rounded, poses are exact.
 Document layoutDocument(const LayoutParts& parts, const Document* before,
                         const std::vector<SensorGroup>& groups, const Arrangement& arrangement);
 

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells that a laser covers by the thesis' reckoning: those within the contour of its beams.
+//
+// The contour joins the ends of adjacent beams by straight lines: it cuts corners, and holds floor
+// behind objects that stand between two beams. Its area is therefore not that of the visible
+// region; the thesis' tables are made of it. O(beams) casts, and O(cells in its box).
 #pragma once
 
 #include "base/cell_set.h"

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Computes the views of candidates, site by site.
+//
+// Sites are taken in batches of 512 for lasers in a slice, of 32 for views of a plane, which take
+// longer: several threads look, and the batch is added in order, so the set is the same for any
+// number of threads and holds little besides itself. A batch is also the step that shards divide
+// and that --resume stores. Once progress says stop, a sample of the remaining sites, spread along
+// a Morton curve, follows, so that a stopped search has candidates everywhere.
 #include "arrange/candidate.h"
 
 #include <tbb/parallel_for.h>

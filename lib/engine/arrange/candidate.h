@@ -1,4 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Candidates: sensors at poses, with the cells that they see. These are the columns of the coverage
+// problem; to compute them takes most of the time of a search.
+//
+// A site is a point at one height, tilt and roll; its candidates differ in heading and share
+// storage. A level laser sees its visibility polygon within a sector, so the circle about a site is
+// cut at the limits of all sectors, each part is rasterised once, and a candidate is a range of
+// parts: 16 headings take hardly more time than one. A sensor with a field of view has a part for
+// each heading; sight of the plane is found once for all of them, and for several tilts if they
+// share SiteSights.
+//
+// Views are those of VisibleArea, cell by cell: tables and shared sights save time and change no
+// cell (candidate_views_test). Sites are scanned by several threads and added in order.
+//
+//     PosedCandidates set(grid.size());
+//     const CandidateViews views(sight, grid, device, mount);
+//     addCandidates(set, views, sites, max_bytes, progress);
+//     const Pose3 best = set.pose(0);              // of the first heading of the first site
 #pragma once
 
 #include <algorithm>
@@ -26,7 +43,9 @@
 
 namespace ispace {
 
-/// Candidates with their poses; the candidates of one site differ only in heading.
+/// Candidates with their poses; the candidates of one site differ only in heading. Besides the
+/// memory of CandidateSet it takes a heading for each candidate and a pose for each site. Const
+/// members are thread-safe.
 class PosedCandidates : public CandidateSet {
   public:
     using CandidateSet::CandidateSet;
@@ -42,6 +61,7 @@ class PosedCandidates : public CandidateSet {
     }
     /// Candidates that are added from here on stand in this room of the site; before, in room 0.
     void beginRoom(std::size_t room) { rooms_.push_back({size(), room}); }
+    /// O(log rooms)
     [[nodiscard]] std::size_t roomOf(std::size_t candidate) const {
         const auto next = std::ranges::upper_bound(rooms_, candidate, {}, &RoomStart::candidate);
         return next == rooms_.begin() ? 0 : std::prev(next)->room;
@@ -73,7 +93,8 @@ class SiteErrors;
 struct KnownSight;
 
 /// The cells to which sensors at each of some sites, all at one height, have a free sight: views of
-/// several tilts share them. Thread-safe.
+/// several tilts share them. Two bits a cell and site, filled as views ask. Thread-safe: a thread
+/// that finds a site in use looks without it.
 class SiteSights {
   public:
     /// \pre isWorthwhile()
@@ -81,7 +102,7 @@ class SiteSights {
     ~SiteSights();
     SiteSights(const SiteSights&) = delete;
     SiteSights& operator=(const SiteSights&) = delete;
-    /// Returns true if the sights of these sites fit in memory.
+    /// Returns true if the sights of these sites fit in memory, 100 MB.
     [[nodiscard]] static bool isWorthwhile(std::span<const Site> sites, const Grid& grid);
 
     /// The sight of a site while one thread looks from there.
@@ -201,7 +222,7 @@ bool addCandidates(PosedCandidates& set, std::span<const StackedViews> stack,
                    std::size_t least, const SearchShare& share, StopGrace* grace);
 
 /// Returns the sites without the headings from which a sensor sees a counted cell, and without
-/// sites that have no heading left.
+/// sites that have no heading left. Keeps their order; several threads look.
 std::vector<Site> sitesOutOfSight(const CandidateViews& views, std::span<const Site> sites);
 
 }  // namespace ispace

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Heights, tilts and sites of a kind of sensor; candidate.cc computes their views.
+//
+// Candidates are made level by level and tilt by tilt, so that views of one height share sight.
+// Hierarchical Random (the thesis, section 4.4.3) differs: it draws sites, takes the best, draws
+// more about it, and counts the floor in view as covered before the next sensor.
 #include "arrange/candidate_generator.h"
 
 #include <algorithm>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Candidates of one kind of sensor in a room: heights and tilts by the mount, sites by the strategy
+// and the rules, views by candidate.h.
+//
+// Sites are rounded to nanometres, so that layouts read well. Random sites are drawn by the seed,
+// the kind's id and the number of the sensor; threads and shards draw the same.
 #pragma once
 
 #include <memory>
@@ -28,6 +33,10 @@ struct CaseRoom;
 using CaseRooms = std::span<const std::unique_ptr<CaseRoom>>;
 
 /// Builds candidates by the strategy and the mount rules of the options.
+///
+/// Hierarchical Random draws for one sensor after another, each about the floor that those before
+/// leave: make() of its kinds counts what earlier calls have covered, so their order matters. The
+/// sets of all calls share options.max_bytes. Not thread-safe.
 class CandidatePool {
   public:
     /// Stores references.
@@ -48,7 +57,7 @@ class CandidatePool {
         bool is_complete = true;
     };
     Made make(const SensorClass& kind);
-    /// Returns the validity test for sites at this height.
+    /// Returns the validity test for sites at this height; builds it once for each height.
     const SiteValidity& validityAt(double height);
 
   private:

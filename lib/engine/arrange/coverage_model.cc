@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Builds the coverage problem of a site, and maps its solutions back.
+//
+// The cells of the problem are those of the rooms, one room after another. A robust search repeats
+// them: a Copy is the block of a room's cells for one case, or for one set of failed sensors, and a
+// candidate's runs are shifted to each copy that it sees. Rooms that see each other are joined
+// candidate by candidate (Joiner): runs in other rooms are added to those in its room. A room alone
+// has no copies, and its candidates are used as they were made.
 #include "arrange/coverage_model.h"
 
 #include <tbb/parallel_for.h>

@@ -1,6 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/arrange: maps the rooms of a site to a weighted coverage problem and its
 // solutions back to sensors.
+//
+// The problem knows cells, whole weights and candidates (search/problem.h); rooms, poses and shares
+// stay here. In one room, and in rooms with equal cells, the weights are those of integerWeights():
+// exact for decimals of a few digits. Cells of unequal rooms count by area, as whole numbers with a
+// sum of about 2^32 (2^25 if sensors may fail), rounded down: a share is at most rounding() too
+// small, a part in 2^32 (2^25) for each cell at most, and bounds of shares have it added.
+//
+// Receivers of ultrasound cover in fours: each of them has multiplicity 1, all other sensors 4, and
+// a cell requires 4 for each sensor of the redundancy. Without receivers both are 1.
+//
+//     CoverageModel model(site, groups, options, progress);
+//     const SearchResult found = search(model.problem(), model.searchOptions(), progress);
+//     const std::vector<Placement> sensors = model.placementsOf(found.best.chosen);
+//     const double bound = model.shareBound(found.bound);
 #pragma once
 
 #include <algorithm>
@@ -50,6 +64,9 @@ struct SiteSensor {
 /// in which they may stand. The cells of the rooms follow each other; those of one room alone have
 /// the weights of options.weights, those of several count by area, too. Standing sensors add to the
 /// multiplicity, also of floor that they see in other rooms, as candidates do.
+///
+/// Rooms of one scene without goals of their own share a RoomModel, and their candidates are made
+/// once. For one thread at a time: also const members prepare levels of rooms. They use all cores.
 class CoverageModel {
   public:
     /// Builds all candidates. Stores references.

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Weighted points or events that sensors serve, in place of the floor.
+//
+// The maximal covering location problem (R. Church, C. ReVelle, The maximal covering location
+// problem, 1974): the search sees an element as it sees a cell, so its guarantees and bounds hold
+// for any rule by which one sensor serves an element. A rule about pairs of sensors does not fit.
+//
+//     class Exits final : public Demand { … };      // a camera serves the exits within 6 m
+//     options.demand = std::make_shared<const Exits>(scene);
 #pragma once
 
 #include <cstddef>
@@ -23,7 +31,7 @@ struct ServedDemand {
 };
 
 /// The demand of a covering problem in place of the floor of a room: weighted elements, each with a
-/// rule by which a sensor serves it (demand points, Church and ReVelle 1974).
+/// rule by which a sensor serves it (demand points).
 ///
 /// arrange() maximises the weight of the elements that as many sensors serve as they need, and
 /// proves its bound over the candidates, whatever the rule: it must depend on one sensor at a time.

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds candidate sites on a lattice, along all walls, under frames and along the medial axis.
+//
+// The medial axis comes from the Voronoi diagram of samples of the boundary (T. K. Dey, W. Zhao,
+// Approximating the medial axis from the Voronoi diagram with a convergence guarantee, 2004):
+// CGAL's Delaunay triangulation, with exact predicates. A vertex counts if two of its samples are
+// seen from it at nearly a right angle or more, which leaves out vertices between neighbouring
+// samples of one wall. Coordinates are snapped to 2^-20 m first, so that cocircular samples, which
+// straight walls have by the dozen, do not depend on where the plan lies.
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/arrange: finds the walls along which candidates stand.
+//
+// A wall is a straight stretch of a curve with floor on its left, whatever elements it consists of.
+// Turns at corners are decided exactly; pieces of one wall are joined within kWeldDistance. Pure
+// functions.
 #pragma once
 
 #include <span>
@@ -9,13 +13,15 @@
 
 namespace ispace {
 
-/// Returns the part of the slice that belongs to walls, fences, rooms, doors and windows.
+/// Returns the part of the slice at a height, metres, that belongs to walls, fences, rooms, doors
+/// and windows. O(n)
 Slice wallSlice(const Environment& environment, double height);
 
 /// Returns the closed curves with the floor on their left: the boundaries of its regions, joined
 /// with the sheets that stand in it, which are followed along both sides. A sheet that touches no
-/// other line is a curve of two vertices. Sheets outside the floor are skipped. Deterministic. O(n
-/// log n)
+/// other line is a curve of two vertices. Sheets outside the floor are skipped. Ends of sheets
+/// within kWeldDistance of a boundary are welded to it; sheets that cross a boundary become curves
+/// by themselves. Deterministic. O(n log n)
 std::vector<Polygon> wallCurves(const std::vector<Region>& floor, std::span<const Segment2> sheets);
 
 /// Returns the corners of a closed curve: its vertices without duplicates and without those at

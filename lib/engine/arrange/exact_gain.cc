@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The area that a sensor adds at many poses, exactly.
+//
+// An overlay of all regions for each pose would take O(n log n) in all of them. Instead, the floor
+// that lacks exactly one more sensor is computed once, about the sensor that moves (look()); the
+// gain of a pose is then the area that its region shares with that floor, an overlay without the
+// others. The box about the sensor grows when a pose leaves it: gains are of whole regions, so
+// those of different boxes compare. prepareAll() computes for all sensors at once which floor is
+// unseen and which only one of them sees: the others' lines vanish from one overlay (label
+// `coarse`).
+//
+// A label packs counts: receivers above the low 32 bits of `numbers`, all other sensors in these;
+// four receivers together count as one sensor. Mark i is floor of weight i, mark 63 the box.
 #include "arrange/refine.h"
 
 #include <tbb/parallel_for.h>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/arrange: the table of objectives.
+//
+// Objectives combine: weights of cells are multiplied, limits of views are applied one after
+// another, and each row that is asked for reports its figure. The search itself is that of the
+// first row with `find`.
 #pragma once
 
 #include <span>
@@ -41,7 +45,7 @@ std::span<const Objective> objectives();
 
 /// Computes the product of the weights of all requested objectives. O(cells * zones)
 std::vector<double> cellWeights(const Target& target, const ArrangeOptions& options);
-/// Applies the limits of all requested objectives to the sensor.
+/// Applies the limits of all requested objectives to the sensor: it covers less, and sees as much.
 void limitCovered(SensorModel& model, const ArrangeOptions& options);
 
 }  // namespace ispace

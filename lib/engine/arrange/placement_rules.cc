@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Validity of sites, and lists of sites in files.
+//
+// A site is valid at exactly the required distance: distances round, so kWeldDistance is subtracted
+// from or added to limits in its favour. Inside and outside are exact (env/level.h).
 #include "arrange/placement_rules.h"
 
 #include <tbb/parallel_for.h>

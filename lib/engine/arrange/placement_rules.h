@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sites of candidates: positions that the strategies propose, and the rules that they must pass.
+//
+// Strategies propose sites without regard to bodies; SiteValidity then decides, exactly for inside
+// and outside, to within kWeldDistance for distances. Counts of sites along lines have tolerances,
+// so that a plan that is moved has as many, in spite of rounding. Functions are pure and
+// thread-safe; positions are metres in the frame of the room.
+//
+// The thesis' strategies follow its section 4.4, the medial axis Dey and Zhao.
+//
+//     const SiteValidity validity(environment, {.height = 0.15, .clearance = 0.3});
+//     bool is_complete = true;
+//     std::vector<Site> sites = sitesAt(latticePlaces(environment.limits(), 0.25),
+//                                       headingsAround(16));
+//     sites = validSites(validity, std::move(sites), progress, is_complete);
 #pragma once
 
 #include <cstddef>
@@ -16,7 +30,8 @@
 
 namespace ispace {
 
-/// A position with the headings to try there: distinct; among equal views the first wins.
+/// A position with the headings to try there: distinct; among equal views the first wins. Height
+/// and tilt are those of the mount.
 struct Site {
     Point2 place;
     std::vector<Angle> headings;
@@ -145,7 +160,8 @@ struct SiteRules {
     std::optional<double> wall_within;
 };
 
-/// The validity test for sites. Thread-safe once built. O(log n) typically.
+/// The validity test for sites. Thread-safe once built. O(log n) typically, for n lines of the
+/// plan; building it takes O(n log n).
 class SiteValidity {
   public:
     SiteValidity(const Environment& environment, SiteRules rules);

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Moves the sensors of a layout off their candidates, by the area that they see exactly.
+//
+// Coverage on a grid has no slope; the area of a union of views has. Regions are in closed form and
+// their union is an overlay (geom/overlay/overlay.h): areas err by its rounding. The result is
+// never worse than the start, and a local optimum: it has no bound of its distance from the best
+// layout.
+//
+//     const VisibleArea sight(scene.environment, 0);
+//     const Refined better = refine(scene, sight, sensors, {}, {}, progress);
+//     // better.after >= better.before, m2
 #pragma once
 
 #include <cstddef>
@@ -19,6 +29,7 @@ namespace ispace {
 
 class CoverageModel;
 
+/// Steps and rules of a refinement.
 struct RefineOptions {
     int multiplicity = 1;                ///< a point is covered if this many sensors see it
     double step = 0.25;                  ///< first step, metres; steps are halved down to 1 mm
@@ -30,10 +41,11 @@ struct RefineOptions {
     std::function<bool(const std::vector<Pose3>&)> accepts = {};
 };
 
+/// A refined layout.
 struct Refined {
     std::vector<Pose3> poses;      ///< in the order of the sensors
     double before = 0, after = 0;  ///< exact weighted area covered, m2; after >= before
-    std::size_t evaluations = 0;
+    std::size_t evaluations = 0;   ///< poses of which the gain was computed
 };
 
 /// Validates before a search that refine() can follow it.
@@ -42,13 +54,14 @@ struct Refined {
 void mustBeRefinable(const Scene& scene, std::span<const SensorModel> devices,
                      const FloorWeights& weights);
 
-/// Improves a layout in continuous x, y and heading: sensor after sensor, by pattern search (Hooke
-/// and Jeeves 1961: steps along the axes and their pattern, halved when no step gains). The
-/// objective is the exact weighted area that at least `multiplicity` sensors see, in closed form
-/// (Overlay), including the standing sensors of the scene. z, tilt and roll stay, and so does the
-/// heading of a sensor with the same view at every heading. Steps lead to whole multiples of 0.1 mm
-/// and 0.001 degrees and count if they gain more than 1e-9 of the total; a sensor without such a
-/// step keeps its pose to the bit. Ends when no step of the smallest length gains.
+/// Improves a layout in continuous x, y and heading: sensor after sensor, by pattern search
+/// (R. Hooke, T. A. Jeeves, Direct search solution of numerical and statistical problems, 1961):
+/// steps along the axes and their pattern, halved when no step gains. The objective is the exact
+/// weighted area that at least `multiplicity` sensors see, in closed form (Overlay), including the
+/// standing sensors of the scene. z, tilt and roll stay, and so does the heading of a sensor with
+/// the same view at every heading. Steps lead to whole multiples of 0.1 mm and 0.001 degrees and
+/// count if they gain more than 1e-9 of the total; a sensor without such a step keeps its pose to
+/// the bit. Ends when no step of the smallest length, 1 mm and 0.05 degrees, gains.
 ///
 /// The result does not depend on the number of threads. Returns early, with the best poses so far,
 /// if progress says stop.
@@ -70,6 +83,14 @@ Refined refine(CoverageModel& model, const std::vector<Placement>& placements, s
 ///
 /// Standing sensors of the scene do not move: their regions, and the floor by its weights, are
 /// computed once.
+///
+///     ExactGain gain(scene, sight, sensors, {}, 1);
+///     gain.take(0);
+///     const std::vector<double> of = gain.gains(poses);    // of sensor 0, each pose alone
+///     gain.put(poses[1]);                                  // value() grows by of[1] - of[0], if
+///                                                          // poses[0] was its pose
+///
+/// Not thread-safe; gains() uses all cores.
 class ExactGain {
   public:
     /// All sensors stand at their poses. Stores the references.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells, weights and standing coverage of one room, on the search's grid. Views of standing sensors
+// come from measureCoverage(), those of candidates from CandidateViews: both count the same cells.
 #include "arrange/room_model.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/arrange: the floor of one room in cells, and candidates for sensors in it.
+//
+// A site has one for each room; rooms of the same scene and goals share it. Standing sensors are
+// measured as `coverage` measures them, on the grid of the search.
 #pragma once
 
 #include <cstddef>

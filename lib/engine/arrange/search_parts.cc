@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Searches parts of a site one by one, for 1, 2, ... sensors, and shares the sensors out.
+//
+// A PartProblem holds the cells and candidates of a part in the order of the site, so that equal
+// parts give equal results, candidate by candidate, and a choice maps back by its position. One
+// sensor more never covers less, and a bound for n sensors holds for fewer: a search that ends
+// below the one before it, or is stopped, takes that result and one more sensor.
 #include "arrange/search_parts.h"
 
 #include <algorithm>

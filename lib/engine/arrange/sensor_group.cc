@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Groups, classes and placements of sensors: bookkeeping between records and the search. A sensor
+// keeps its id when it is placed anew; new ones get the next free ids of their rooms.
 #include "arrange/sensor_group.h"
 
 #include <algorithm>

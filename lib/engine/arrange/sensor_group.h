@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors to be placed, from their records to their poses.
+//
+// A group is one record, of the layout or of --sensor, with a count. Groups with equal parameters
+// and mount are one class (kindsOf): they share candidates. A search chooses poses by class, and
+// placementsOf() deals them out to the sensors of the groups, in order. All of it depends on the
+// order of records and options alone.
+//
+//     const auto groups = groupsToPlace(scene, specs, devices, false);
+//     const auto kinds = kindsOf(groups);
+//     const auto placed = placementsOf(rooms, groups, kinds, poses);
+//     const Record record = placedRecord(groups[placed[0].group], placed[0]);
 #pragma once
 
 #include <cstddef>
@@ -61,6 +72,7 @@ struct SensorClass {
 };
 
 /// Returns the kinds of these groups, in order of first appearance; `apart`: one for each sensor.
+/// Groups with different costs, rooms, tilts or rolls are different kinds. O(groups * kinds)
 std::vector<SensorClass> kindsOf(const std::vector<SensorGroup>& groups, bool apart = false);
 
 /// A sensor and the pose found for it, if any.

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rooms in which sensors are placed together, and how they see each other.
+//
+// A room has a frame, in which its scene, its sensors and their poses are; `origin` and `turn` lead
+// to the frame of the site. Sight between rooms is an interface, which lib/engine/site implements
+// for storeys: this folder asks which cells of a room a sensor of another one sees. A room alone is
+// a site without sight.
+//
+//     const ArrangeSite site = siteOf(scene, options);     // arrange.h
+//     const std::string id = wholeId(site, 0, "c1");       // "c1"; "ground/c1" on a storey
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The strategies of the thesis: Ordinary Grid, Along Wall, Hierarchical Random; the strategy table.
+// Sections 4.4.2, 4.4.5 and 4.4.3; equations (4.1) and (4.2) give the lines of the grid.
 #include "arrange/strategy.h"
 
 #include <algorithm>

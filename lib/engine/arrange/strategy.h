@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The table of strategies: name, options, defaults and proposal of each.
+//
+// The command line, its help and its refusals come from these rows: a strategy is a function and a
+// row. Proposals are pure functions; sites are validated later (placement_rules.h).
+//
+//     const StrategyRow* const row = strategyNamed("wall");
+//     const std::vector<Site> sites = row->propose({environment, 0.15, 4, options});
 #pragma once
 
 #include <optional>

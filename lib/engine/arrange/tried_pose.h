@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Poses that a search tried: rows of --trace, and of the gains that reports show.
 #pragma once
 
 #include <optional>

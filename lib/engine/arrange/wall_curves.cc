@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Follows walls: the boundary of the floor, and sheets that stand in it, as closed curves with the
+// floor on their left.
+//
+// Lines that share ends form a planar graph, of which each line is walked in both directions. At
+// the end of a line the walk turns to the next line clockwise, so it goes around one face (as in a
+// doubly connected edge list; M. de Berg, O. Cheong, M. van Kreveld, M. Overmars, Computational
+// geometry, 2008, section 2.2). Directions are compared by exact orientation, without angles.
+// Invariant: either all steps of a curve have the floor on their left, or the sheets cross a
+// boundary, and then they become curves by themselves.
 #include "arrange/dense_sites.h"
 
 #include <algorithm>
