@@ -312,8 +312,8 @@ struct LayoutParts {
 };
 
 /// Builds a `.3dm`: the `environment` record, the records of `before` (if any) with its pending
-/// sensors placed, the new sensors, the `result`. A pending sensor keeps its position, so that a diff
-/// of both layouts shows poses alone. Shares are rounded, poses are exact.
+/// sensors placed, the new sensors, the `result`. A pending sensor keeps its position, so that a
+/// diff of both layouts shows poses alone. Shares are rounded, poses are exact.
 Document layoutDocument(const LayoutParts& parts, const Document* before,
                         const std::vector<SensorGroup>& groups, const Arrangement& arrangement);
 

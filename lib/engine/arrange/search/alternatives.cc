@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Further solutions, by splitting those that remain (E. L. Lawler, A procedure for computing the K
+// best solutions to discrete optimization problems, 1972). Parts are problems without candidates
+// near some choices; the part with the best solution is split next.
 #include "arrange/search/alternatives.h"
 
 #include <algorithm>

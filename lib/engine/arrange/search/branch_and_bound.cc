@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The search tree: a loop over batches of open nodes.
+//
+// Invariant: closed_ bounds all solutions that are neither known nor in an open node, so the larger
+// of it and of the highest open bound is a bound of the problem. A batch is eight nodes for any
+// number of threads; they are branched against the same best value, and their results are taken in
+// order. While memory is short, the newest node comes first, so that the tree goes down before it
+// goes wide.
 #include "arrange/search/branch_and_bound.h"
 
 #include <tbb/parallel_for.h>

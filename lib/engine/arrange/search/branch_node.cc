@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One node of the tree: its bound, its exclusions, and its children.
+//
+// Multipliers begin as the parent's. Candidates whose reduced cost cannot lift the bound above the
+// cut are excluded, those without which it falls to the cut are fixed, and if few candidates remain
+// the problem is cut down to them (reduced_problem.cc). Up to 10^4 sets are enumerated, others are
+// split (split_node.cc). `closed` of a result bounds all that was excluded.
 #include "arrange/search/branch_node.h"
 
 #include <algorithm>

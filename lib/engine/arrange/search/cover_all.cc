@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The fewest sensors that see every cell, by rows as needed.
+//
+// A cover of some cells bounds a cover of all from below, and if it leaves no cell uncovered it is
+// one (M. C. Couto, P. J. de Rezende, C. C. de Souza, An exact algorithm for minimizing vertex
+// guards on art galleries, 2011). Begins with a cell for each sensor of a known solution, which it
+// alone sees, and adds up to 20 uncovered cells a round. Candidates that see the same of these
+// cells are one column.
 #include <algorithm>
 #include <map>
 #include <numeric>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A set cover by rows and columns: reductions, and bounds by prices.
+//
+// A row is dropped if another row's columns all cover it, a column if another covers its rows for
+// no more, and forced columns are taken (J. E. Beasley, An algorithm for set covering problem,
+// 1987). Signatures of 64 bits exclude most pairs before their lists are compared. Prices rise by
+// subgradients with memory (P. M. Camerini, L. Fratta, F. Maffioli, On improving relaxation methods
+// by modified gradient techniques, 1975). They are multiples of 2^-20, and the sum of prices less
+// the excess of columns is a bound for any prices: no rounding, no tolerance.
 #include "arrange/search/cover_core.h"
 
 #include <algorithm>

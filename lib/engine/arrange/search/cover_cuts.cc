@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds of set covers by linear programs with cuts.
+//
+// The dual simplex of GLPK solves the program; each basic variable that is not whole yields a row
+// of the basis' inverse, whose fractions are multipliers of a Chvatal-Gomory cut (R. E. Gomory,
+// Outline of an algorithm for integer solutions to linear programs, 1958). Multipliers and prices
+// are rounded down to multiples of 2^-20, and cuts and bounds are computed anew from these: errors
+// of the simplex method make a bound weaker, never wrong.
 #include <glpk.h>
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Candidate sets in memory: a run of cells is one word of 32 bits, its first cell above its length;
+// runs too long for that are cut in pieces. Words lie in blocks that never move. A site is weighed
+// by one pass over its runs, after which each candidate takes two differences of prefix sums.
 #include "arrange/search/cover_sets.h"
 #include "base/per_thread.h"
 

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Orbits of columns, by colours.
+//
+// Columns and rows are told apart by the colours of their neighbours until colours settle (B. D.
+// McKay, A. Piperno, Practical graph isomorphism II, 2014). To map one column to another, both get
+// a new colour, and the first of equal colours again, without backtracking: symmetries may be
+// missed, which costs time alone. A permutation counts only after costs and rows were compared, so
+// that equal hashes of different colours do no harm.
 #include <algorithm>
 #include <numeric>
 

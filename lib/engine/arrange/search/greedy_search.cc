@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Greedy placement, lazily (M. Minoux, Accelerated greedy algorithms for maximizing submodular set
+// functions, 1978).
+//
+// If one sensor covers a cell, gains only fall as sensors are added: an old gain bounds a new one,
+// and few sites are weighed. If a cell requires several, gains also rise. A cell then counts by its
+// weight over the number of sensors that it lacks, 0 if too few are left, and the bound of a site
+// rises by the rises of all cells in its span. With a budget and different costs, placements by
+// gain and by gain for cost are both made, and the better one is taken (J. Leskovec, A. Krause, C.
+// Guestrin, C. Faloutsos, J. VanBriesen, N. Glance, Cost-effective outbreak detection in networks,
+// 2007).
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

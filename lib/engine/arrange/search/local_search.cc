@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Best responses: one sensor is removed and put where it gains most over all others, until no
+// sensor moves; then kicks (H. R. Lourenço, O. C. Martin, T. Stützle, Iterated local search, 2003).
+//
+// Most of the time goes into finding the best candidate again after little has changed. Each
+// position in the solution keeps bounds of the sites' gains: they rise by the rises of the cells in
+// view, by blocks (site_blocks.h), and fall to what blocks allow. Responses are cached by a hash of
+// 128 bits of the other sensors; a false hit would cost a move, never a wrong value, as values are
+// recomputed.
 #include "arrange/search/local_search.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The Lagrangian bound of a node. With multipliers m <= w of cells, no solution exceeds
+//
+//     settled + sum (w - m) + the best reduced costs of each group, as many as it has sensors
+//
+// where a reduced cost is the sum of m over the cells in view, in parts where several sensors are
+// needed. Whole numbers, rounded up. evaluate() weighs all candidates and returns a bound;
+// evaluateWorking() weighs a few promising sites, and returns a number that may be below it: it
+// only tells whether a full evaluation is worth its time.
 #include "arrange/search/branch_node.h"
 
 #include <tbb/blocked_range.h>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One evaluation of the overlap bound: from the leaves of the tree of areas to its root, the best
+// value of an area for each candidate that it might begin with; then the choice back from the root.
+//
+// Views are bundled, so that one sum over the cells common to a bundle excludes most of its
+// members. Sums are whole numbers; an area with three sensors or more is bounded by the union of
+// its views.
 #include "arrange/search/pair_bound.h"
 
 #include <tbb/blocked_range.h>

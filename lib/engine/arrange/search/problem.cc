@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Values, costs, connection and levels of cost of coverage problems, and their text as MPS.
+//
+// A value takes two writes for a run and a pass over the cells. Costs are doubles, as users write
+// them: sums kind by kind round little, and comparisons allow 1e-13 of the cost. Connection merges
+// sensors that share a cell of weight by union-find (R. E. Tarjan, Efficiency of a good but not
+// linear set union algorithm, 1975). Sums of costs are listed by binary counts of each kind, as
+// levels; beyond 4000 levels even steps stand for them.
 #include "arrange/search/problem.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts a problem down to some candidates. Cells that the same of them see, with the same need,
+// become one cell: thousands become hundreds, and bounds are computed as many times faster.
+//
+// A set of parts is told by the exclusive or of 128 bits of each part (A. L. Zobrist, A new hashing
+// method with application for game playing, 1970), computed from differences along the cells: two
+// operations a run. Distinct sets would have equal bits with a probability of about 2^-128; no
+// other step of a proof depends on a hash.
 #include "arrange/search/branch_node.h"
 
 #include <algorithm>

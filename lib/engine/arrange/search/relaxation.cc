@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells in fine units, ways to spend a budget, and the search for multipliers.
+//
+// Weights are scaled by the largest factor for which their sum fits in 32 bits, so that whole
+// multipliers are fine enough. A budget
+// allows up to 20 000 combinations of counts, which are listed; beyond, a fractional knapsack
+// bounds them. Multipliers move by the volume algorithm (F. Barahona, R. Anbil, The volume
+// algorithm: producing primal solutions with a subgradient method, 2000), in sums of a fixed order:
+// results do not depend on threads or vector widths.
 #include "arrange/search/relaxation.h"
 
 #include <algorithm>

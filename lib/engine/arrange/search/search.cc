@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The stages of a search: greedy placement, a quick bound, swaps, a tight bound; for Exact also
+// kicks, the overlap bound and the tree.
+//
+// Invariant: the best value only rises, the bound only falls, and both are valid after each stage,
+// so that a search may stop at any of them. A stage whose result is stored under its name, with the
+// fingerprint of the problem, is read instead of computed: shards and later runs take the same
+// course.
 #include "arrange/search/search.h"
 
 #include <algorithm>

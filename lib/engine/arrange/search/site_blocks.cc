@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds of sites by blocks of cells: the weight seen of each block, as numbers of 16 bits in rows
+// of sites, so that a bound of all sites is a sum of minima by vector instructions. Weights are
+// shifted and rounded up; a cell in several parts of a site counts several times: bounds are never
+// too low.
 #include "arrange/search/site_blocks.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Splits of a node, compared by strong branching on its core.
+//
+// The candidates of a group are sorted by the likeness of their views to that of the candidate that
+// the relaxation takes most often. Parts end where the relaxation has half a sensor, or one and a
+// half, in the first part: a whole number of sensors on either side excludes its present solution.
 #include <algorithm>
 #include <cassert>
 #include <cmath>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Local searches from many starts: the greedy solution, solutions of similar problems, and eight
+// random sensors filled up greedily; the best ends are then kicked.
+//
+// Starts run in parallel and take each other's best responses from a cache. A start that reaches a
+// sufficient value ends all later ones, and their results are dropped: what remains is the same for
+// any number of threads. Random numbers are keyed by the number of the start.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
