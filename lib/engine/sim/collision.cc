@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Circles against lines, and circles against circles.
+//
+// Two moves at once are one relative path past the origin: circles meet if it comes nearer than the
+// sum of their radii. Chords are tested first, widened by what the paths may bulge; only where that
+// fails are the parts tested. A circle is stopped by a line only if it enters it deeper than at its
+// start, so that rounding, or an overlap at the start, traps no mover.
+//
+// Squared distances choose the lines that are near; decisions are made by distance(), with a margin
+// between them that exceeds the rounding of both.
 #include "sim/collision.h"
 
 #include <algorithm>

@@ -1,5 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Collisions of movers with obstacles and with each other.
+//
+// A mover is a circle on the floor. Bodies count from the floor to the height of the mover. A step
+// is a path: it is tested as a whole, so that fast movers pass through no thin wall. Circles may
+// touch, and overlap by kContactTolerance, which absorbs rounding. One that overlaps a body by
+// rounding, or from the start, may only leave it.
+//
+// A path that bends is replaced by the chords of 16 parts. With acceleration a the path of a part
+// strays from a uniform motion along its chord by at most a (T / 16)^2 / 8: 1.2e-8 m in a step of
+// 5 ms at 1 m/s2, and no more than 1/256 of Advance::lag.
+//
+//     const Obstacles obstacles(environment, 0.5, nullptr);
+//     const std::optional<std::size_t> element = obstacles.stop({{0, 0}, {2, 0}}, 0.25);
 #pragma once
 
 #include <algorithm>
@@ -36,16 +48,16 @@ inline double squaredDistance(Point2 p, const Segment2& s) {
     return dot(apart, apart);
 }
 
-/// Finds the lines of a band that block a circle, by a grid.
-/// Thread-safe.
+/// Finds the lines of a band that block a circle, by a grid. Queries take time in proportion to the
+/// lines near the point; building takes O(n log n), after few changes of the environment
+/// O(changes). Thread-safe.
 class Obstacles {
   public:
     /// \pre the band's pieces have owners
     explicit Obstacles(const Slice& band);
     /// Takes the band from the floor to this height.
     /// \param before obstacles of the same height: their grid is shared if few elements changed
-    /// since
-    ///        it was built, and those stand in a second grid; may be null
+    ///        since it was built, and those stand in a second grid; may be null
     Obstacles(const Environment& environment, double height, const Obstacles* before);
 
     /// Returns the first element of Environment::elements() with a line that a circle overlaps; if
@@ -171,7 +183,7 @@ std::vector<std::size_t> settlingOrder(std::span<const Mover> movers);
 /// Finds the movers that a move runs into.
 ///
 /// A move is tested against the settled moves, and against the starts of all other movers: whatever
-/// moves these make later, no two movers ever overlap.
+/// moves these make later, no two movers ever overlap. Const members are thread-safe.
 class Traffic {
   public:
     /// \param order see settlingOrder \param duration seconds of a step

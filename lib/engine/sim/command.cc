@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The table of verbs, and parsers of commands and scripts. Errors have the form: what is wrong,
+// what is wanted, an example.
 #include "sim/command.h"
 
 #include <algorithm>

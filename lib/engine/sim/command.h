@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Commands to movers: their verbs, texts and scripts.
+//
+// The verbs are those of the thesis' Command System (table 3.5), with a path, a way to a point and
+// a sideways speed besides. The parsers return errors with hints instead of throwing, since a
+// client that types a wrong command gets a reply; scripts are files and throw FormatError with all
+// findings. Metres and degrees, as in the protocol.
+//
+//     const ParsedCommand parsed = parseCommand("FORWARD 1.5");
+//     if (parsed.command && world.refusal(robot, *parsed.command).empty())
+//         world.command(robot, *parsed.command);
 #pragma once
 
 #include <cstddef>

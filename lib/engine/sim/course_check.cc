@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Legs that are straight and free with 15 cm to spare need no walk: no mover steers nearer. Others
+// are walked by a world with the one mover. The body that is named is the first on the line, found
+// by bisection of the line.
 #include "sim/course_check.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Checks paths of a scene before a run: `--check` names legs that a mover would give up.
+//
+// Walks are those of a run without noise and other movers, with steps of 5 ms: at most four million
+// of these, some ten seconds.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Each kind of event compares the world after a step with the state before, which it keeps for
+// itself.
 #include "sim/events.h"
 
 #include <algorithm>

@@ -1,4 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Events of a world: collisions, zones, mats, gates, sight, states, and marks of clients.
+//
+// Events are facts of steps, in a fixed order, and the same in every run of the same commands. They
+// are numbered; some ten thousand are kept, so that slow readers notice a gap by first().
+//
+// Costs. A kind without subscribers takes no time. Zones are tested for movers that moved; sight
+// takes a ray for each sensor and mover in its range, ten times a second, while movers move.
+//
+//     EventLog log(world);
+//     log.want({EventKind::Collision, EventKind::Enter});
+//     for (std::int64_t next = log.next(); world.time() < end;) {
+//         world.step();
+//         log.stepped();
+//         for (; next < log.next(); ++next) print(log.at(next));
+//     }
 #pragma once
 
 #include <cstddef>
@@ -43,6 +58,7 @@ std::optional<EventKind> eventKindNamed(std::string_view name);
 using EventKinds = std::set<EventKind>;
 EventKinds allEventKinds();
 
+/// An event. Fields that its kind does not name are empty.
 struct Event {
     EventKind kind = EventKind::Mark;
     SimTime time{};

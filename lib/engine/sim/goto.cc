@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Goto: ways of movers of a world to a point, round bodies and movers that stand.
+//
+// A way is found once, from where the mover is, and handed to its pilot as a path. If the pilot
+// gives up, a new way is sought round those that stand, up to twice; if there is none, the first
+// one is tried again, as they may leave. Reasons for failure name a body, a door, or the nearest
+// point with a way.
 #include <algorithm>
 #include <cassert>
 #include <cmath>

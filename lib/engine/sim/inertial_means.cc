@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sums of turns and of changes of velocity, step by step. In axes that turn by a step's angle a, a
+// constant velocity v changes by a v to its left.
 #include "sim/inertial_means.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/sim: mean motions between the readings of inertial measurement units.
+//
+// A unit that reads less often than the world steps must not miss motion: the integral of its
+// readings is the motion of its carrier, whatever the two rates are.
 #pragma once
 
 #include <cstddef>

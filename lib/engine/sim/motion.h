@@ -1,4 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Kinematics of a mover: how commands and limits become motion.
+//
+// A mover drives along its heading and turns about its centre (a unicycle; eq. 5.1-5.4 of the
+// thesis); one with an omnidirectional drive also moves sideways. Each axis speeds up and brakes at
+// a constant rate, so speed over time is a trapezoid. Distances and turns end exactly at
+// their goals, at rest, without a remainder that steps would add up.
+//
+// Positions are accurate to 1e-13 of the way. Two half steps give the same as a whole one, up to
+// rounding. Pure functions. Metres and seconds; the axis of turning counts degrees.
+//
+//     Motion motion;                                    // at 0,0, heading 0, at rest
+//     motion.command({Verb::Forward, 1.5});
+//     const Advance to = advance(motion, limitsOf(model, 0), 0.005);
 #pragma once
 
 #include <limits>

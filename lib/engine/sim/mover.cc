@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Poses over time, and people as robots. A trail stores one moment for all steps in which no mover
+// moves.
 #include "sim/mover.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Movers: robots and people, which are modelled as robots, and the trail of their poses.
+//
+// A scan of a spinning laser takes longer than a step, so the poses of all movers are kept for as
+// long as the longest scan lasts.
+//
+//     const std::vector<Mover> movers = moversOf(scene);
+//     PoseHistory trail(std::chrono::milliseconds(100));
+//     trail.add(time, poses, true);
+//     PoseHistory::Walk walk(trail, time - std::chrono::milliseconds(25));
+//     walk.to(0.01);                                    // 10 ms later: walk.from(), walk.to()
 #pragma once
 
 #include <cstddef>

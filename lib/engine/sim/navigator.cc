@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The rules of a pilot: arrive, give up, turn aside, slow down, wait, step aside, wander.
+//
+// Two movers that meet pass on the right, since Steering tests right first. A mover without a free
+// heading waits one to three seconds before it tries a side, and one that circles about a point
+// between walls goes straight on after two. Random numbers are keyed by seed, id and a count of
+// draws, so that each mover has a sequence for itself.
 #include "sim/navigator.h"
 
 #include <algorithm>

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Autonomous movers.
+// Autonomous movers: the pilot that follows a path, or wanders.
+//
+// Decides ten times a second, by steering.h, and sets goals of the motion: limits and collisions
+// stay with the world. A navigator is a value without pointers to its surroundings, so that worlds
+// copy it. It finds its way round bodies nearby, not through a maze: that is path_finder.h.
+//
+//     Navigator pilot(mover, seed);
+//     pilot.follow({.path = {{2, 0}, {2, 3}}}, 0.4, false);
+//     if (pilot.isDue(time, motion)) pilot.steer(helm, motion);
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Arcs, errors, and the estimate of a robot's pose.
+//
+// Sine and cosine along an arc are power series of eleven terms, accurate to rounding up to a
+// quarter turn: they take no branches, so the poses of all beams of a scan are computed by vectors.
+// A chord of an arc that turns by a points a / 2 to the side and is sin(a / 2) / (a / 2) of its
+// length.
 #include "sim/odometry.h"
 
 #include <algorithm>

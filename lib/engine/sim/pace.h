@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The work of a world for its time, as measured.
+//
+// Counts the processor time of the thread that steps the world, not of the others that help it. The
+// figure varies from run to run; it decides about requests of clients alone, never about the course
+// of the world.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Shortest ways of a circle over the floor.
+//
+// A* over cells of 0.1 m (P. E. Hart, N. J. Nilsson, B. Raphael, A formal basis for the heuristic
+// determination of minimum cost paths, 1968) with whole costs and buckets in place of a heap (R. B.
+// Dial, Algorithm 360: shortest-path forest with topological ordering, 1969). On open floor a way
+// from cell to cell is at most 8.4 % longer than the straight line, before it is straightened; ways
+// through gaps narrower than about a cell more than the circle may be missed.
+//
+// Equal inputs give equal ways; ties between ways depend on the direction of search. A finder takes
+// a byte a cell, a Field four.
+//
+//     const Obstacles obstacles(environment, model.height, nullptr);
+//     const PathFinder finder(obstacles, bounds(environment.indoor()), model.radius);
+//     const std::vector<Point2> way = finder.wayBetween({0, 0}, {4, 2});    // empty: no way
 #pragma once
 
 #include <cstddef>

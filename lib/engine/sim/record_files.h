@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files of a record, and their lines.
+// Private to lib/engine/sim: the files of a record, and their lines.
+//
+// A line is whole or absent: text is collected in memory and written up to its last newline, a torn
+// line of a full disk is taken back, and a file of an earlier run is replaced, not overwritten.
+// Links are refused, so that a record cannot be led elsewhere. Numbers have the shortest text that
+// reads back to the same double; a number that equals that of the row before is not formatted
+// again.
 #pragma once
 
 #include <sys/types.h>

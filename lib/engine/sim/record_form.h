@@ -12,6 +12,7 @@
 
 namespace ispace {
 
+/// Moments and columns of a record, and its compression. The defaults record everything, plain.
 struct RecordForm {
     /// Time from one moment in robots.csv, people.csv and odometry.csv to the next: a multiple of
     /// the step. 0: each step.

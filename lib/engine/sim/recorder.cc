@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of steps, and when they are written.
+//
+// Lines are collected and flushed ten times a second of wall time, or once there is much; only
+// between steps, so that all files can be cut behind the same step. After an error the record ends
+// with the last step that all files hold, and info.csv, whose room on the disk is taken first,
+// names it.
 #include "sim/recorder.h"
 
 #include <algorithm>

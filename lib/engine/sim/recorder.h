@@ -1,4 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Records of runs: a folder of tables, readings and pictures that replays, coverage and other
+// programs read.
+//
+// Files hold whole lines up to the last flush, also after a crash; on a full disk they are cut
+// behind the last step that all of them hold. Except for timing.csv their text is the same in each
+// run of the same commands. Written by the thread that steps the world; frames may be taken in
+// others.
+//
+//     Recorder recorder("out", world, {.seed = 1}, &run.events(), &run.tracks());
+//     run.recordWith(recorder);
+//     …                                                 // the run
+//     recorder.end(world);
 #pragma once
 
 #include <chrono>
@@ -31,6 +43,7 @@ struct FrameJob {
 
 using FrameTaker = std::function<void(FrameJob job)>;
 
+/// Contents and limits of a record.
 struct RecordOptions {
     History history = {};
     std::uint64_t seed = 0;
@@ -66,8 +79,7 @@ struct RecordOptions {
 /// - bumpers.csv: t,id,hit; the pressed bumpers of each robot, at the start and at each change
 /// - scans.jsonl: every reading, as `scan` writes it
 /// - pictures/ID-NNNNNN.png and depths/ID-NNNNNN.png: frames of cameras and rangers by the number
-/// of
-///   their period
+///   of their period
 /// - events.csv: events, see EventLog
 /// - tracks.csv: what programs told of people and robots, see TrackLog
 /// - scene.env: the scene of the run; scenes/scene-NNNNNN.env: those that clients loaded

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bumpers by points on the rim, mats and gates by the outlines of bodies. Rectangles are apart if
+// an axis of one of them separates them (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree: a
+// hierarchical structure for rapid interference detection, 1996, here in the plane).
 #include "sim/robot_sensors.h"
 
 #include <algorithm>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Limits of additions by clients to a running world, so that no client brings it to a halt.
+//
+// Loads are sums over records, computed before a change is made: O(records). They bound memory and
+// work roughly; pace.h measures the work.
+//
+//     checkLoad(loadOf(before, step, nullptr), loadOf(after, step, nullptr));   // throws OverLimit
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth frames and pictures, which a SensorReader takes on request.
+// Depth frames and pictures, which a SensorReader takes on request. A request keeps the poses of
+// its moment, so that the world may go on while another thread takes the frame.
 #include <algorithm>
 #include <utility>
 

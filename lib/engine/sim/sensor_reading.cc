@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Periods in exact arithmetic: periods per nanosecond are a fraction of 128-bit whole numbers, of
+// the decimal that was written, or else of the double. No time within a run overflows them.
 #include "sim/sensor_reading.h"
 
 #include <algorithm>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Readings of a running world, and the periods in which sensors are read.
+//
+//     const Periods periods(30);
+//     const SimTime second = periods.begin(1);          // 33 333 334 ns: the first in period 1
+//     const std::int64_t k = periods.newest(second);    // 1
 #pragma once
 
 #include <cstddef>

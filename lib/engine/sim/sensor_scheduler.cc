@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// When sensors are read, and with which poses, bodies and velocities.
+//
+// A reading has two halves. update() fixes time, number, pose and bodies, for all due sensors,
+// before the world goes on; measure() casts the rays of one, later, in any thread. Between them
+// only these values are read, so that late readings equal early ones.
 #include "sim/sensor_scheduler.h"
 
 #include <tbb/parallel_for.h>

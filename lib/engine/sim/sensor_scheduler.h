@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/sim: reads the sensors of a running world.
+//
+// Periods are exact (Periods): a sensor of 30 Hz is read 30 times in every second of a run, in the
+// steps at or after the beginnings, if steps are shorter than that. All values that rays need are
+// fixed when a step ends; the rays themselves may be cast later, in blocks, by several threads, and
+// in any order.
+//
+// Sensors that continue from their last reading (temperatures, motion detectors) are read in each
+// of their periods, also those that end within a step or in skipped steps of a replay.
 #pragma once
 
 #include <chrono>

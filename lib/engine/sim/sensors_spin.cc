@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scans of spinning lasers, beam after beam.
+//
+// Each beam has its own time. The carrier moves along an arc between stored moments of the trail,
+// and the bodies that a beam meets are those of the nearer moment. Where no mover has moved since
+// the scan began, all beams are cast at once.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Times as text, without doubles: digits are added up as whole nanoseconds, with 15 more decimals
+// that only round.
 #include "sim/sim_time.h"
 
 #include <algorithm>

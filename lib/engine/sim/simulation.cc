@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The loop that takes steps, and its clock.
+//
+// A step is due at the start of the clock plus simulated time over the rate, rounded up to
+// nanoseconds. A pause keeps the time to the next step; a change of the rate scales it. Budgets are
+// checked between steps and between parts of a step, never within a move.
 #include "sim/simulation.h"
 
 #include <algorithm>

@@ -1,4 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Drives a world: by wall time, as fast as possible or step by step, with a script, a record or a
+// client.
+//
+// The course of the world does not depend on wall time: the clock decides when steps are taken,
+// never how. Times of steps are computed from the start of the clock, so that rounding errors do
+// not add up. A lag of more than a quarter of a second is forgiven.
+//
+// For one thread at a time. run() returns after about its budget, so that a server answers clients
+// in between.
+//
+//     std::vector<TimedCommand> script = readScript(text, "moves.txt", world);
+//     Simulation run(world, std::move(script), parseClock("real:2"), simSeconds(60));
+//     while (!run.finished()) {
+//         const auto next = run.run(WallTime::clock::now(), std::chrono::milliseconds(20));
+//         if (next) std::this_thread::sleep_until(*next);
+//     }
 #pragma once
 
 #include <algorithm>
@@ -45,6 +61,10 @@ Clock parseClock(const std::string& text);
 std::optional<double> parseClockRate(std::string_view text);
 
 /// Drives a world: script, clock, pauses, end.
+///
+/// Order of a step: observers before it, the step, events, the record, worlds that this one leads,
+/// commands of the script for the next step, plans of days, observers after it. A step begins once
+/// the one before is recorded, with its frames.
 class Simulation {
   public:
     /// The last step is the first one that ends at `until` or later; without it a run ends at

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The run of one room behind the interface of many (worlds.h): requests about storeys and lifts are
+// refused with a reason.
 #pragma once
 
 #include <optional>

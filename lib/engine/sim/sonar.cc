@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sonars of a robot, all at once, with few rays.
+//
+// Bodies come first, then surfaces. For both, each ray gets a lower bound of its distance to the
+// rectangles about what stands in the cone, by vectors. Rays within 2 mm of the least bound are
+// cast; the echo that they find spares all rays with a greater bound. Ranges are those of casting
+// all rays: bounds are in single precision in the frame of the sonar, where their margin of 1 mm
+// exceeds all rounding.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/sim: surroundings of robots' sonars, which spare most rays.
+//
+// Each surface bounds the distance along each ray from below; rays whose bound is beyond an echo
+// that is known are not cast. Bounds have a margin of kEchoSlack, so ranges are those of all 37
+// rays.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// States of a world as words: doors, lamps, mats, motion detectors. See room_state.h.
+//
+//     StateWatch watch(world);
+//     world.step();
+//     for (const RoomState& state : watch.changed()) print(state.id, state.key, state.value);
 #pragma once
 
 #include <cstdint>
@@ -17,7 +22,8 @@ class World;
 /// readings.
 std::vector<RoomState> statesOf(const World& world);
 
-/// Reports the states of a world that change, compared with those at its beginning.
+/// Reports the states of a world that change, compared with those at its beginning. Reads only the
+/// sensors of the last step; records only after a change of the world.
 class StateWatch {
   public:
     /// The world must outlive it.

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Free headings for autonomous movers.
+//
+// Eleven headings about the desired one are tested, right before left. Other movers are circles
+// that keep their velocities (P. Fiorini, Z. Shiller, Motion planning in dynamic environments using
+// velocity obstacles, 1998); obstacles are lines. A choice avoids most collisions; World cancels
+// the moves that still collide.
+//
+// Tests by lanes of vectors, strips and memories of earlier choices come first and decide only
+// where rounding cannot matter; in doubt the exact test follows. They save time and change no
+// choice.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The way of a robot's wheels, for device protocols that count it.
 #pragma once
 
 #include "geom/pose.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The interface of a world: what clients ask and order. Steps are in world_step.cc, states and
+// changes of the scene in world_state.cc, ways in goto.cc.
 #include "sim/world.h"
 
 #include <tbb/parallel_for.h>

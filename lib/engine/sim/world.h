@@ -1,4 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The simulated world of a room: robots, people and sensors, in fixed steps.
+//
+// Guarantees. The same scene, options and commands between the same steps give the same states and
+// readings, bit by bit, for any number of threads: moves are proposed in parallel from one state
+// and settled in a fixed order, and random numbers are keyed by seed, id and step. No command moves
+// a robot into a body or another mover, within the tolerance of collision.h; movers that overlap at
+// the start can only part. Readings do not depend on when they are taken.
+//
+// Costs. A step takes O(movers) for movers apart from each other, on all cores; each looks up the
+// bodies near it once in about a metre of way. checkCrowding() bounds the pairs of movers near each
+// other before the first step. Sensors are read only when due, pictures and depth frames only on
+// request.
+//
+// For one thread at a time, except for functions that say "in any thread". Metres and seconds,
+// poses in the frame of the room. Motion follows chapter 5 of the thesis.
+//
+//     World world(scene, std::chrono::milliseconds(5));
+//     const std::size_t robot = *world.robotNamed("r1");
+//     const int id = world.command(robot, {Verb::Forward, 1.5});
+//     while (world.running(robot) == id) world.step();
+//     const RobotStatus status = world.status(robot);               // status.stall: it hit a body
 #pragma once
 
 #include <chrono>
@@ -44,7 +65,8 @@ struct Odometry {
     MotionAlphas alphas{};            ///< by which they grow; 0 without noise
 };
 
-/// How a command ended.
+/// How a command ended: it reached its goal, ran into a body, found no way, was replaced by another
+/// command, or was stopped.
 enum class Outcome { Done, Stall, Unreached, Replaced, Stopped };
 
 /// The end of a command with an id.

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Edits of a running world, in two parts.
+//
+// The scene after the edits is made from the records before them; positions of movers that an edit
+// sets only in part come from the world, and are taken again when the change is made, in case they
+// moved meanwhile. Edits that are set apart may be made in any order, so their loads count as if
+// all records were there twice.
 #include "sim/world_editor.h"
 
 #include <algorithm>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Changes of a running world: edits of its records, another scene, and the way back.
+//
+// A change has a slow part, which any thread may do while the world goes on, and a short one
+// between two steps. It is made whole or not at all. The library reads no files: SceneSource does,
+// for the tool. Loads are checked before (run_limits.h), and at real time the measured work, too
+// (pace.h).
+//
+//     const WorldEditor editor(run, source);
+//     editor.edit(parseEdits("SET l1.range=0,8")).carryOut();
 #pragma once
 
 #include <functional>

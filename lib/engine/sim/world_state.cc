@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Builds the state of a world, takes recorded states, and leads from one scene to the next.
 #include "sim/world_state.h"
 
 #include <algorithm>

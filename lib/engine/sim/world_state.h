@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state of a world, and the transition to the next scene.
+// Private to lib/engine/sim: the state of a world, and the transition to the next scene.
+//
+// A scene and the structures built of it (SceneResources) are slow to make and do not depend on
+// movers, so another thread may make the next ones while the world goes on. Data is the rest:
+// motions, commands, readings. A change of the scene builds new Data from the old one and drops
+// that, which pictures under way may still share. All indices are those of Data's scene.
 #pragma once
 
 #include <map>
@@ -87,7 +92,7 @@ struct MoverState {
     MotionLimits limits;
     std::optional<MotionLimits> own_limits;  // from orders to its wheels
     double clearance = 0;           // distance that it can go before it meets an obstacle, at least
-    double room = 0;                // no other mover's circle is nearer
+    double room = 0;                // no other mover's circle is nearer; used up step by step
     int ids = 0;                    // issued so far
     int running = 0;                // id of the command that comes to an end, or 0
     std::optional<GotoState> trip;  // of a Goto, until it stands at its goal
@@ -111,6 +116,7 @@ struct CarriedState {
     Gait gait = {};          ///< of a person
 };
 
+/// A world. A step is begin(), proposeAll(), settle(), apply(); then sensors are read.
 struct World::Data {
     Data(std::shared_ptr<SceneResources> room, SimTime step_length, const RunOptions& run);
 

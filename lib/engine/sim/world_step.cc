@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Advances the state of a world by a step.
+//
+// First, each mover proposes a move from the state at the beginning, in parallel: no proposal reads
+// another. A mover that stands is done, and so is one with more room about it than it and any other
+// can use up in the step. Second, the rest look at their neighbours, in parallel, and most are
+// done. Third, those that may collide are settled one by one, robots before people, by id: a move
+// is tested against the settled moves and against the starts of all others, and cancelled if it
+// collides. So the result is that of settling all of them in this order.
+//
+// Invariant: `room` of a mover is a lower bound of the distance to every other circle, less what
+// both can have moved since it was measured; `clearance` is that to bodies.
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The interface between a server and the one or the many rooms of a run.
+//
+// Rooms step together and share one time. Each has its own world, frame and ids of things; movers
+// keep their ids and the numbers of their commands from room to room. A trip is one command with
+// one id and one end, however many rooms it leads through. Refusals are texts for the client, "" if
+// it is done; the functions throw for broken files alone.
+//
+//     const TripAnswer answer = worlds.travel("r1", {.points = {{upper, {1, 2}}}});
+//     if (!answer.refusal.empty()) reply("ERR 409 " + answer.refusal);
 #pragma once
 
 #include <cstddef>
