@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A building as the site of a search: floors with their surroundings, sight, and figures by the
+// functions of `coverage`.
 #include "site/arranged_site.h"
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Buildings of other programs.
+//
+// Importers of extensions are added at the start of a program, before any thread reads files: the
+// list is not guarded.
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The vocabulary of buildings: keywords that join rooms.
 #pragma once
 
 #include "record/schema.h"

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Chooses storeys by words: ids, names, globs, in any case if none fits as written. The rest of a
+// building is made anew by makeBuilding(), so that its indices, order and checks are those of a
+// file without the others.
 #include "site/chosen_storeys.h"
 
 #include <algorithm>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that hold several rooms, and which of them --storey takes.
+//
+//     if (mayHoldStoreys(bytes, choice))
+//         if (auto building = readStoreys(bytes, operand, options, choice))
+//             use(chosenStoreys(*std::move(building), choice, operand));
 #pragma once
 
 #include <optional>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Builds the surroundings of storeys: records of the own room, and one mesh of all that is around
+// it.
+//
+// RoomBuilder collects the openings, slabs and neighbours that the extent of a room asks for, and
+// writes them in the frame of the own storey: openings become faces without floor, other rooms
+// become triangles, slabs become closed bodies that end a millimetre (kSkin) within their faces, so
+// that a sensor at a ceiling is not in it. Storeys of one scene with equal key() share a floor.
+//
+// Sheets of a mesh are a few float steps longer than their lines: vertices at one point would be
+// welded, and sheets around an area would count as a solid.
 #include "site/coupling.h"
 
 #include <algorithm>

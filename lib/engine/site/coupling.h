@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the rooms of a building see each other: one answer for readings, measures and checks.
+//
+// Faults of a building are findings, not errors: an opening beyond the rooms, stairs in a wall or
+// storeys that overlap give some surroundings, and checkBuilding() and findings() name the fault.
+// Bodies around a room are a mesh in single precision: 100 m from the origin, corners are off by up
+// to 4e-6 m.
 #pragma once
 
 #include <cstddef>
@@ -40,6 +45,7 @@ struct FloorOpening {
 std::vector<FloorOpening> floorOpenings(const SiteScene& building);
 
 /// Returns, for each storey, which others one reaches from it upwards through openings.
+/// O(openings * storeys). \pre storeys are sorted by height
 std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
                                             std::span<const FloorOpening> openings);
 
@@ -77,7 +83,7 @@ bool hasFloor(const Scene& scene);
 /// matters keeps its own environment, without a copy.
 ///
 ///     const Coupling coupling(building);
-///     Worlds worlds(*coupling.surroundings(storey));       // readings
+///     RayScenes worlds(*coupling.surroundings(storey));    // readings
 ///     measureCoverage(*coupling.floor(storey), ...);       // figures
 ///     for (const Finding& finding : coupling.findings(storey)) ...
 class Coupling {

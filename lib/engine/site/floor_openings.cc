@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Openings in floors, and the storeys that one reaches through them.
+// Openings in floors, and the storeys that one reaches through them. Stairs that turn have no
+// opening: their flights hide the view.
 #include <algorithm>
 
 #include "env/walls.h"

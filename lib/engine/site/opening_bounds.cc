@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reachability of storeys, and boxes projected from the eye to the plane.
 #include "site/opening_bounds.h"
 
 #include <algorithm>

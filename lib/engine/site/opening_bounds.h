@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/site: bounds of the openings between storeys.
+//
+// A sensor and the box about the openings in a floor span a box on the plane that is seen; sight
+// leads through all floors only where their boxes and the range have a common part. Never excludes
+// sight that exists. O(floors between) for a sensor.
 #pragma once
 
 #include <cstddef>

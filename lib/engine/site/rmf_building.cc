@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sites of Open-RMF (building.yaml of its traffic editor): levels with vertices, walls, doors and
 // measurements, and lifts.
+//
+// Levels are laid over each other by fiducials of equal names: the rigid motion of least squares
+// (S. Umeyama, Least-squares estimation of transformation parameters between two point patterns,
+// 1991; in the plane the angle is the direction of summed products). Walls and doors then go
+// through the importer of plans, which joins their ends.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

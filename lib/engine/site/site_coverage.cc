@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Measures storeys, and adds up their figures.
+//
+// Sums carry areas, not shares, so that large storeys weigh more; a sum with an unknown part is
+// unknown. Sensors are listed once, with the storeys that they see added to their own.
 #include "site/site_coverage.h"
 
 #include <algorithm>

@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The coverage of a building: that of its storeys, and their sums.
+//
+// Figures are those of measureCoverage() for each storey, with the views of other storeys' sensors
+// through shafts and over stairs. Areas add up; a share of the building is a sum of areas over the
+// floor of all storeys, and empty if that of a storey is unknown. Storeys in equal surroundings are
+// measured once. Deterministic for any number of threads.
+//
+//     const SiteCoverage measured = measureSite(building, {.plane = 0});
+//     const std::optional<double> share = measured.coverage.exact;
 #pragma once
 
 #include <cstddef>

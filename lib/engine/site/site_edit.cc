@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Edits by whole ids: all records are gathered with their ids across the building, edited as one
+// list, and split by storeys again. Ids that were automatic are left out again as far as the order
+// still gives them.
 #include "site/site_edit.h"
 
 #include <algorithm>

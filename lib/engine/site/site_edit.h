@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Edits of a whole building, by ids across it.
+//
+//     editSite(building, parseEdits("SET ground/d1.open=yes"));
 #pragma once
 
 #include <cstddef>

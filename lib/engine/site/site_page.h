@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The report of a building as a page, which report/page writes as HTML or PDF.
 #pragma once
 
 #include <string>
@@ -10,6 +11,7 @@
 
 namespace ispace {
 
+/// Contents of the page of a building. References are kept while the page is built.
 struct SitePageInput {
     const SiteScene& building;
     const SiteCoverage& coverage;

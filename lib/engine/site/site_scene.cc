@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Scenes of storeys, and ids across a building. Rooms of equal documents become one scene, unless a
+// layout adds to one of them.
 #include "site/site_scene.h"
 
 #include <algorithm>

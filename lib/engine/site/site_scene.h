@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scenes of a building, one for each storey, and reports and drawings of all of them.
+//
+// Ids are plain within a storey and begin with it across the building: "d1", "ground/d1". Files and
+// layouts of buildings have the latter; scenes the former, so that code for rooms needs no storeys.
+//
+//     const SiteScene building = makeSiteScene(std::move(document), {}, devices);
+//     const Scene& ground = *building.scenes.front();
 #pragma once
 
 #include <memory>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Views between storeys, each computed once.
+//
+// A view is the shadow region of a sensor in the joined room of all storeys between (coverage's
+// ShadowCaster), cut by the outlines of the openings, projected from the eye to the plane: floor
+// that is seen past the rim of a floor does not count. Sensors in equal surroundings, to the
+// nanometre, share a view. Several rooms are computed at once; the order of views is that of
+// storeys and sensors.
 #include "site/site_sight.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// People by storeys: the largest remainders of shares of the free floor (Hare's quota), the first
+// storey among equals; so numbers are whole and add up.
 #include "site/storey_people.h"
 
 #include <algorithm>

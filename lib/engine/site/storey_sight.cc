@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells that sensors see in other storeys. A cell counts if the line from its centre to the eye
+// passes each floor between within an opening, and not nearer than a micrometre to its rim.
 #include "site/storey_sight.h"
 
 #include <algorithm>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sight into other storeys by cells, for sensors that may stand anywhere: candidates of a search.
+//
+// viewsBetweenStoreys() computes regions of sensors that stand; this class answers for thousands of
+// poses. Rows and columns that no opening shows are excluded first, then cells are seen as on any
+// plane, and those seen past the rims of openings are removed.
+//
+//     const StoreySight sight(coupling, 0);
+//     if (sight.maySee(0, sensor, 1)) sight.look(0, {&sensor, 1}, 1, grid, parts);
 #pragma once
 
 #include <cstddef>

@@ -2,6 +2,17 @@
 // lib/engine/site: the rooms that every tool reads, one alone or several above each other, and what
 // joins them. It owns the scenes, one for each storey; no code below it knows of storeys. Uses
 // report and below.
+//
+// A building is a site of N rooms; a room alone is a site of one with an empty id, whose figures,
+// reports and messages are those of the room. storeys.h reads and writes buildings,
+// site_scene.h makes scenes of them, coupling.h says how they see each other, and site_coverage.h,
+// arranged_site.h and lib/engine/passage measure, arrange and run them.
+//
+// Lengths are metres, z is up. Storeys are sorted by the heights of their floors; equal rooms are
+// read once and shared by pointer, which later saves scenes, views and figures.
+//
+//     const StoreyedDocument building = readBuilding(bytes, "house.yaml", options);
+//     for (const Storey& storey : building.storeys) print(storey.id, storey.floor);
 #pragma once
 
 #include <cstddef>
