@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Replays of a building's run: each world follows its own record.
+// Replays of a building's run: each world follows its own record, lifts follow lifts.csv, and
+// movers are found in the room that has them.
 #include <algorithm>
 #include <memory>
 #include <optional>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Movers that are put elsewhere, and a building that restarts.
+// Movers that are put elsewhere, and a building that restarts. Ids of commands go on counting, so
+// that no client takes the end of an old command for that of a new one.
 #include <algorithm>
 #include <cstddef>
 #include <map>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The rooms of a building and the movers in them.
+//
+// A mover goes to another room as two changes of scenes, between steps: its record, with those of
+// its sensors and of the thing in its hand, is deleted in one and added in the other, and its
+// odometry, gait and count of commands are carried over. Records of the worlds tell both as
+// requests, so that a replay of each world needs no other. If the new scene is refused, both stay
+// as they were.
 #include "passage/building_run.h"
 
 #include <algorithm>

@@ -1,4 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The run of a building: a world for each room, and movers that go between them.
+//
+// Guarantees are those of World, room by room. Trips are decided before each step, in the order of
+// ids, from the state that all worlds have then: they do not depend on threads. Between steps a
+// mover is in one world, and a passage is entered only by the mover that has its turn there.
+//
+// Costs. Ways from all landings are found once for each size of movers: O(landings * cells). A
+// mover that changes rooms changes the scenes of two worlds, which share the geometry of their
+// rooms.
+//
+//     BuildingRun run(building, {.clock = {Clock::Kind::Fast}, .until = simSeconds(300)});
+//     run.travel("ground/r1", {.points = {{1, {2, 3}}}});          // to storey 1
+//     while (!run.simulation().finished())
+//         run.simulation().run(WallTime::clock::now(), std::chrono::seconds(1));
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/passage: the state of a building's run.
+//
+// A trip is a state machine (TripState), advanced before each step: it gives its mover one command
+// of a world at a time, and reads from the ends of commands how it went. Turns at passages are
+// queues by stop. All maps are ordered by id, so that equal runs take equal decisions.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +41,8 @@ struct Traveller {
     std::vector<Record> records = {};  ///< its own, then those of its sensors
 };
 
+/// The state of a trip. A passage leads from Queueing over Nearing, Entering, Riding or Climbing,
+/// and Leaving to AtEnd.
 enum class TripState {
     Setting,   ///< about to begin a leg
     Walking,   ///< to where it waits, or to the goal
@@ -57,8 +63,9 @@ struct StoreySection {
     std::vector<Point2> points;
 };
 
+/// A trip of a mover to the points of a plan, as a sequence of commands in several worlds.
 struct BuildingTrip {
-    int command = 0;
+    int command = 0;  ///< its id among those of the mover
     TripPlan plan;
     std::size_t goal = 0;             ///< of the plan's points
     SimTime pause_until{};            ///< of Pausing

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of scripts: trips and rides are checked by the run's own parsers, all else by those of a
+// room.
 #include "passage/building_script.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Scripts of a building's run: those of a room, and trips between storeys.
+//
+//     BuildingScript script(text, "moves.txt", run);       // throws FormatError with all findings
+//     run.simulation().beforeStep([&] { script.give(run); });
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trips of robots and people through a building: their goals, legs and commands.
+//
+// Before each step every trip looks at the end of its mover's command and gives the next one. A
+// step that fails is tried again, round movers that stand, up to five times, or ten if those that
+// wait were asked to step aside. Then the trip is given up, but not on a landing: the mover clears
+// it first, for those behind.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Room in a lift's cabin: where riders stand, and which of them can get out.
+//
+// Riders are circles on a raster of 5 cm, from the back to the door. A slot leaves riders for other
+// stops a straight way out, so no cabin locks: of those that leave at a stop one always can.
 #pragma once
 
 #include <limits>

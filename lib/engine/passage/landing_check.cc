@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Depth before the steps, in three lanes of the widest mover, by the walls ahead; and spots to
+// wait, by StoreyPaths itself, so that check and run agree.
 #include "passage/landing_check.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Checks landings of stairs before a run: crowds jam where those that wait block those that come.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Dijkstra's algorithm over the two zones and all landings, by the length that is seen, then by the
+// length; edges are ways on a storey, computed once each, and passages, which are not seen.
 #include "passage/least_seen_trip.h"
 
 #include <algorithm>

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The way of an intruder through a building that sensors see least.
+//
+// Exact for the regions of the coverage, as findLeastSeenPath() is: no way over floors, stairs and
+// lifts is seen for less.
+//
+//     const LeastSeenTrip trip = findLeastSeenTrip(building, coverage, {"ground/door",
+//     "upper/safe"}); if (trip.whole.exists) print(trip.whole.seen.value_or(0), trip.whole.length);
+//     // metres
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Phases of a lift, and the ride with constant acceleration: a parabola up to the speed, a line,
+// and a parabola back; over short ways two parabolas.
 #include "passage/lift.h"
 
 #include <algorithm>

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/passage: the worlds of a building in lock step, and the lifts and stairs between them.
-// Uses building and sim.
+// Uses site and sim.
+//
+// This header has the motion of a lift, as functions of time: height and doors follow from the
+// phase and its beginning, so that nothing adds up from step to step, and a record of phases is a
+// record of the lift. Durations are rounded to microseconds; a phase begins with the first step at
+// or after the end of the one before.
+//
+//     Lift lift({.floors = {0, 3.2}, .speed = 1});
+//     lift.call(1);
+//     for (SimTime time{}; !lift.isOpenAt(1); time += step) lift.advance(time, false);
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Phases of lifts as rows, written when they begin. Flushed row by row: there are few.
 #include "passage/lift_record.h"
 
 #include <algorithm>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lifts and stairs: turns at their landings, and the ways in, through and out.
+//
+// A stop has a queue and one holder of its landing. The first of the queue goes to the landing once
+// the lift is open, those that leave are out, and there is a slot for it; or once no mover comes
+// toward it on stairs where two cannot pass. Those in a lift or on stairs that find their landing
+// occupied ask others to step aside after 3 s, and turn back after 30 s, so that others can use the
+// passage.
 #include <algorithm>
 #include <deque>
 #include <optional>

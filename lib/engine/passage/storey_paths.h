@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Private to lib/engine/passage: the ways over the storeys and from one to another.
+//
+// A landing is the floor before a door or a flight, with spots beside it where movers wait. Routes
+// are fastest over landings (E. W. Dijkstra, A note on two problems in connexion with graphs,
+// 1959), by lengths of ways over cells, speeds, rides, doors and expected queues: estimates, since
+// other movers are not foreseen.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Movers with walk=wander: time on a storey, and trips to others.
+// Movers with walk=wander: time on a storey, and trips to others. Random numbers are keyed by seed,
+// id and a count of draws.
 #include <array>
 #include <span>
 #include <vector>
