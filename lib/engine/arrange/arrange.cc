@@ -55,6 +55,7 @@ void mustFitInModel(const Problem& problem) {
                          ": use fewer candidates (--candidates) or larger cells (--cell)");
 }
 
+/// Writes the problem as MPS, with the pose of each candidate as a comment.
 void writeModel(const CoverageModel& model, std::ostream& mps) {
     mustFitInModel(model.problem());
     std::vector<std::string> names;
@@ -116,6 +117,8 @@ double boundOf(const SearchResult& result, const CoverageModel& model) {
     return model.isComplete() ? model.shareBound(result.bound) : 1;
 }
 
+/// Moves the sensors off their candidates. The bound of the candidates no longer holds then: that
+/// of any poses takes its place.
 void refineIn(Arrangement& result, CoverageModel& model, std::uint64_t before, Progress& progress) {
     const Refined refined = refine(model, result.sensors, before, progress);
     result.is_refined = true;
@@ -160,6 +163,8 @@ Measured measuredSite(Arrangement& result, const CoverageModel& model, CoverageO
             false};
 }
 
+/// Sets the figures of the written layout: coverage, area, value, and those of the objectives.
+/// Exact shares are computed only where a target of the whole floor is judged by them.
 void measure(Arrangement& result, CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     const bool is_whole_floor = options.target && options.weights.isUniform() &&
@@ -328,6 +333,7 @@ bool areNear(const CoverageModel& model, const Choice& a, const Choice& b) {
             (is_round(a) && is_round(b)));
 }
 
+/// Adds further layouts. Each is measured like the first, without refinement.
 void addAlternatives(Arrangement& result, CoverageModel& model, const Solution& best,
                      Progress& progress) {
     const NearChoices are_near = [&model](const Choice& a, const Choice& b) {
@@ -351,6 +357,7 @@ void addAlternatives(Arrangement& result, CoverageModel& model, const Solution& 
     }
 }
 
+/// One search, from candidates to figures. A shard returns early, once its own steps are stored.
 Arrangement arrangeLimited(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                            const ArrangeOptions& options, Progress& progress, std::ostream* mps) {
     CoverageModel model(site, groups, options, progress);

@@ -113,6 +113,8 @@ void CoverageModel::setUnits() {
     problem_.budget = options_.budget;
 }
 
+/// Lays the cells of all rooms one after another. If all are of one size, weights stay as the
+/// options give them; else cells count by area.
 void CoverageModel::addRooms() {
     std::map<const Scene*, std::shared_ptr<RoomModel>> known;
     std::vector<double> weights, areas;  // areas: by room
@@ -159,6 +161,7 @@ void CoverageModel::addRooms() {
     if (joinsRooms()) countStandingBeyond();
 }
 
+/// Gives each element of a demand the number of sensors that it needs.
 void CoverageModel::setNeeds() {
     std::vector<std::uint16_t> needs;  // of all elements
     for (std::size_t i = 0; i < rooms_.size(); ++i) {
@@ -202,6 +205,7 @@ std::vector<Sensor> CoverageModel::standingIn(std::size_t number, std::size_t ro
     return sensors;
 }
 
+/// Adds the floor that standing sensors see in other rooms, as their candidates would.
 void CoverageModel::countStandingBeyond() {
     for (std::size_t number = 0; number < viewCases(); ++number)
         for (std::size_t from = 0; from < rooms_.size(); ++from)
@@ -507,6 +511,8 @@ std::unique_ptr<PosedCandidates> CoverageModel::candidatesOf(const SensorClass& 
     return joined;
 }
 
+/// Makes the candidates of each kind, and the order in which sensors are placed unless their number
+/// is searched.
 void CoverageModel::addKinds(Progress& progress) {
     for (const SensorClass& kind : kinds_) {
         sets_.push_back(candidatesOf(kind, progress));
@@ -556,6 +562,7 @@ std::vector<CoverageModel::Part> CoverageModel::parts() const {
     return parts;
 }
 
+/// Names the part of each cell: coverage is to be connected within each.
 void CoverageModel::addRegions() {
     const std::vector<Part> all = parts();
     if (all.size() < 2) return;

@@ -155,8 +155,8 @@ class CoverageModel {
     [[nodiscard]] Point3 positionOf(const Choice& choice) const;
     /// Returns the sensors at the poses of the chosen candidates.
     [[nodiscard]] std::vector<Placement> placementsOf(const std::vector<Choice>& chosen) const;
-    /// Computes the cells of the search's grid that each sensor sees. Deterministic for any number
-    /// of threads.
+    /// Computes the cells of the search's grid that each sensor sees, anew and not from candidates:
+    /// the poses may be any. Deterministic for any number of threads.
     [[nodiscard]] std::vector<CountedView> viewsOf(std::span<const SiteSensor> sensors) const;
     [[nodiscard]] std::vector<CountedView> viewsOf(std::span<const Placement> placements) const;
     /// As valueOf() of the sensors with these views.
@@ -175,7 +175,8 @@ class CoverageModel {
     /// coverage and, for a laser, its slice area (eq. 4.4) by the thesis' scan of the pose.
     [[nodiscard]] std::vector<TriedPose> triedPoses(const std::vector<Choice>& chosen);
     /// Orders chosen sensors, the one that adds most to those before it first, and returns the gain
-    /// of the candidates for each of them.
+    /// of the candidates for each of them. O(sensors * runs of all candidates) time, and a pose for
+    /// each candidate and sensor in memory.
     [[nodiscard]] std::vector<GainMap> gainMaps(std::vector<Choice> chosen) const;
     /// Returns an upper bound of the value of these numbers of sensors at any poses; `most` by
     /// kind.

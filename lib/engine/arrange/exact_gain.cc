@@ -203,6 +203,8 @@ struct ExactGain::Data {
         near = {};
         if (region.empty()) return;
         near = region.expanded(kReach);
+        // Only floor and views near the sensor take part; the box itself is a mark, so that floor
+        // outside of it is left out.
         std::vector<Layer> layers = {markLayer({curveOf(cornersOf(near))}, kNearMark)};
         addFloors(floorsNear(), layers);
         for (const View& view : standing)
@@ -235,6 +237,7 @@ struct ExactGain::Data {
         };
         const Overlay overlay(layers, {},
                               {.label = coarse, .add_area = [](const LayerLabel&, double) {}});
+        // Labels become sets, so that one pass over the faces finds the curves of all.
         // A set for each floor and moving sensor, after one for each floor that none sees.
         const std::size_t sets_of_floor = moving.size() + 1;
         const std::size_t none = floors.size() * sets_of_floor;

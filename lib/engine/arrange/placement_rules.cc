@@ -195,6 +195,7 @@ struct LexLess {
     bool operator()(Point2 a, Point2 b) const { return lexLess(a, b); }
 };
 
+/// Reads lines of sites, and collects all findings before it throws.
 class SiteReader {
   public:
     /// \param rooms null: one room, without names

@@ -41,7 +41,7 @@ struct Site {
 /// Creates a site with these headings at each position.
 std::vector<Site> sitesAt(const std::vector<Point2>& places, const std::vector<Angle>& headings);
 
-/// Returns `count` headings 360 / count apart, the first 0.
+/// Returns `count` headings 360 / count apart, the first 0; empty for no count.
 std::vector<Angle> headingsAround(int count);
 
 /// Maximum number of sites that a strategy proposes at one height.
@@ -61,7 +61,7 @@ struct GridSearch {
 GridSearch defaultGridSearch(const Box2& limits, double max_range);
 
 /// Returns the x * y crossings x_i = xmin + i (xmax - xmin) / (X + 1), i = 1..X, likewise y; y runs
-/// slowest.
+/// slowest. \pre both numbers are positive, and their product is at most kMaxSites
 std::vector<Point2> gridPlaces(const Box2& limits, const GridSearch& search);
 
 /// Along Wall (section 4.4.5): returns `times` sites on every wall that reaches this height, k /
@@ -97,7 +97,8 @@ struct RandomSequence {
 };
 /// Hierarchical Random (section 4.4.3): returns point k of a sequence, anywhere within limits, or
 /// in the disc of radius `scope` about `center`, both uniform over the area. Independent of the
-/// number of threads. After an invalid point the caller draws again with the next k.
+/// number of threads. After an invalid point the caller draws again with the next k. A coordinate
+/// has 48 random bits. Points about a centre may lie outside the limits.
 /// \pre k < 2^54
 Point2 randomPlace(const Box2& limits, const RandomSequence& sequence, std::uint64_t k);
 Point2 randomPlaceAbout(Point2 center, double scope, const RandomSequence& sequence,
@@ -155,7 +156,7 @@ struct SiteRules {
     bool indoor_only = true;        ///< the thesis' Insider Judge: indoors only
     double clearance = 0;           ///< least distance from walls and objects at this height
     std::vector<Polygon> keep_out;  ///< closed
-    std::vector<Polygon> keep_in;   ///< closed; if any: a site lies in one of them
+    std::vector<Polygon> keep_in;   ///< closed; if any: a site lies in one of them or on its edge
     /// Maximum distance from a wall that reaches this height (to which the sensor is mounted).
     std::optional<double> wall_within;
 };
@@ -187,7 +188,8 @@ std::vector<Site> validSites(const SiteValidity& validity, std::vector<Site> sit
 /// Reads a list of sites from CSV text: `x,y` or `x,y,heading` per line, in metres and degrees; `#`
 /// begins a comment; skips a header line `x,y…`. Lines without heading get `headings`; lines with
 /// the same point are merged into one site, where it came first.
-/// \throws FormatError with line and column of all errors
+/// Numbers are at most a million. A byte order mark is skipped.
+/// \throws FormatError with line and column of all errors, at most Diagnostics::kMax
 std::vector<Site> readSites(const std::string& text, const std::string& name,
                             const std::vector<Angle>& headings);
 

@@ -26,6 +26,7 @@ void count(const CountedView& view, int times, Multiplicities& achieved) {
     view.cells.forEach([&](std::size_t cell) { achieved[cell] += times * view.multiplicity; });
 }
 
+/// Returns true if some cell of weight falls below the required multiplicity without the view.
 bool isNeeded(const Problem& problem, const CountedView& view, const Multiplicities& achieved) {
     bool is_needed = false;
     view.cells.forEach([&](std::size_t cell) {

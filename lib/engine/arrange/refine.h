@@ -105,7 +105,8 @@ class ExactGain {
 
     /// Returns the weight of all floor that counts, m2 times weight.
     [[nodiscard]] double total() const;
-    /// Returns the weight covered at the current poses. O(n log n) in all regions and walls.
+    /// Returns the weight covered at the current poses, at most total(). O(n log n) in all regions
+    /// and walls.
     [[nodiscard]] double value() const;
 
     /// Computes at once, for all sensors, the floor that lacks exactly the one of them, until put()
@@ -126,7 +127,7 @@ class ExactGain {
     /// cores. Reads only its neighbourhood: O(n log n) in its region and those it meets.
     /// \pre take() was called
     [[nodiscard]] std::vector<double> gains(std::span<const Pose3> poses);
-    /// Moves the selected sensor to this pose.
+    /// Moves the selected sensor to this pose. Undoes prepareAll() and prepareBounds().
     void put(const Pose3& pose);
 
     /// Returns false for a sensor with the same view at every heading.

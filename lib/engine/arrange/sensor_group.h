@@ -97,7 +97,8 @@ std::vector<Placement> sensorsToPlace(const std::vector<SensorGroup>& groups,
 inline bool isPartial(const SensorModel& model) { return kindOf(model).together > 1; }
 
 /// Assigns the poses of each kind to the sensors of its groups, in order; removes sensors without a
-/// pose. New sensors get the next free ids of their rooms.
+/// pose. New sensors get the next free ids of their rooms, in the order of the groups; pending ones
+/// keep theirs.
 std::vector<Placement> placementsOf(RoomScenes rooms, const std::vector<SensorGroup>& groups,
                                     const std::vector<SensorClass>& kinds,
                                     const std::vector<std::vector<RoomPose>>& poses);
@@ -109,7 +110,8 @@ Sensor sensorOf(const std::vector<SensorGroup>& groups, const Placement& placeme
 /// `tilt` are set.
 Record placedRecord(const SensorGroup& group, const Placement& placement);
 
-/// Returns the scene of a room with those of these sensors placed that stand in it.
+/// Returns the scene of a room with those of these sensors placed that stand in it, after its own.
+/// Its records stay as they are: digests and layouts do not know the new sensors.
 Scene withPlaced(const Scene& scene, const std::vector<SensorGroup>& groups,
                  const std::vector<Placement>& placements, std::size_t room = 0);
 

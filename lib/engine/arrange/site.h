@@ -91,7 +91,8 @@ class RoomSight {
     /// room.
     [[nodiscard]] virtual bool maySee(std::size_t from, const Sensor& sensor,
                                       std::size_t to) const = 0;
-    /// Computes the cells of a room that sensors of another one see there: a part for each sensor.
+    /// Computes the cells of a room that sensors of another one see there: a part for each sensor,
+    /// and an empty one, as for CandidateSet::addSite(). No cells for sensors inside of solids.
     /// \param turned differ in heading alone \pre maySee() of them
     virtual void look(std::size_t from, std::span<const Sensor> turned, std::size_t to,
                       const Grid& grid, CellParts& parts) const = 0;
@@ -132,7 +133,8 @@ struct SitePassage {
 };
 
 /// Rooms, one or several. The cells of all of them are one problem: a sensor covers floor of its
-/// room, and floor of the others that it sees. Cells count by area.
+/// room, and floor of the others that it sees. Cells count by area. A value that is copied cheaply:
+/// scenes are shared.
 struct ArrangeSite {
     std::vector<SiteRoom> rooms;
     /// Of several rooms; null for one alone. Not owned.

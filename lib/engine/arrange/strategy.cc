@@ -26,6 +26,7 @@ namespace {
 constexpr double kMaxLines = 10000, kMaxPlaces = 100000;
 constexpr double kMaxLength = 1e6, kMaxDist = 1000, kMinLength = 0.001;  // metres
 
+/// A lattice over the limits, then points along walls and objects at the height.
 std::vector<Site> proposeAll(const ProposalRequest& request) {
     const auto& [environment, height, max_range, options] = request;
     const CandidateDensity& density = options.density;
@@ -51,6 +52,7 @@ std::vector<Site> proposeGrid(const ProposalRequest& request) {
 
 std::vector<Site> proposeNone(const ProposalRequest& /*request*/) { return {}; }
 
+/// The thesis' Along Wall; with --deg its headings turn with the normals.
 std::vector<Site> proposeAlongWalls(const ProposalRequest& request) {
     const ArrangeOptions& options = request.options;
     std::vector<Site> sites =

@@ -279,6 +279,8 @@ bool meetsBody(const Move& move, const Move& other) {
 
 }  // namespace
 
+/// Tests by bounds from cheap to dear: reach of both ways, the relative chord with the lag of both,
+/// then the parts.
 bool collides(const Move& move, const Move& other, bool other_moves) {
     if (meetsBody(move, other)) return true;
     const double reach = move.radius + other.radius - kContactTolerance;
@@ -318,6 +320,7 @@ Traffic::Traffic(std::span<const Mover> movers, std::span<const std::size_t> ord
              figure == nullptr || figure->rest.empty() ? 0 : figure->reach});
 }
 
+/// Movers extend as far as any of them gets in a step, so that a query finds all that may meet.
 void Traffic::rebuild(std::span<const Motion> motions) {
     for (std::size_t i = 0; i < motions.size(); ++i) places_[i] = motions[i].pose.position;
     grid_.rebuild(places_, reach_);
@@ -383,6 +386,7 @@ class Neighbours {
 
 }  // namespace
 
+/// One set for each height, however many movers have it.
 ObstacleSets obstaclesOf(const Environment& environment, std::span<const Mover> movers,
                          const ObstacleSets* before) {
     ObstacleSets sets;

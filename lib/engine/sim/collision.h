@@ -48,9 +48,10 @@ inline double squaredDistance(Point2 p, const Segment2& s) {
     return dot(apart, apart);
 }
 
-/// Finds the lines of a band that block a circle, by a grid. Queries take time in proportion to the
-/// lines near the point; building takes O(n log n), after few changes of the environment
-/// O(changes). Thread-safe.
+/// Finds the lines of a band that block a circle, by a grid. Only overlap() knows the inside of
+/// solids: for the other queries a circle within one, off its lines, is free. Queries take time in
+/// proportion to the lines near the point; building takes O(n log n), after few changes of the
+/// environment O(changes). Thread-safe.
 class Obstacles {
   public:
     /// \pre the band's pieces have owners
@@ -63,7 +64,8 @@ class Obstacles {
     /// Returns the first element of Environment::elements() with a line that a circle overlaps; if
     /// there is none, the first with a solid that contains it.
     [[nodiscard]] std::optional<std::size_t> overlap(Point2 center, double radius) const;
-    /// Returns the distance to the nearest line, at most `farthest`. Near lines cost least.
+    /// Returns the distance to the nearest line, at most `farthest`, which it is without a line in
+    /// reach. Near lines cost least.
     [[nodiscard]] double nearest(Point2 p, double farthest) const;
     /// Appends each line nearer to p than `reach` once, and possibly others.
     void findAbout(Point2 p, double reach, std::vector<Segment2>& lines) const;

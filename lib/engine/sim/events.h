@@ -92,10 +92,11 @@ class EventLog {
 
     /// Subscribes to these kinds.
     void want(const EventKinds& kinds);
-    /// Cancels one subscription to each. \pre want() was called for each
+    /// Cancels one subscription to each. A kind without subscribers forgets its state: a later
+    /// subscription starts anew. \pre want() was called for each
     void unwant(const EventKinds& kinds);
 
-    /// Reads the world after a step.
+    /// Reads the world after a step. Keeps all events of that step, however many there are.
     void stepped();
     /// Adds an event between steps, at the world's time. \pre Mark or Change
     void add(EventKind kind, std::string text, std::string other = {});

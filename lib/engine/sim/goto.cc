@@ -136,6 +136,8 @@ std::string World::findPath(std::size_t mover, Command& command) {
     return "";
 }
 
+/// A way ends in one of four states: done and at rest, done but rolling, past the goal, or given
+/// up. Only at rest within kNear, and turned to the heading, is the command done.
 bool World::Data::continueTrip(std::size_t mover, Outcome outcome) {
     GotoState& trip = *states[mover].trip;
     Motion& motion = motions[mover];
@@ -179,6 +181,7 @@ bool World::Data::continueTrip(std::size_t mover, Outcome outcome) {
     return false;
 }
 
+/// Keeps the present way if it is still free, so that a change elsewhere does not disturb movers.
 void World::Data::avoidChange(std::size_t mover) {
     // Half of the margin by which ways keep away from bodies, as the mover strays from its way.
     const double reach = movers[mover].model.radius + PathFinder::kMargin / 2;

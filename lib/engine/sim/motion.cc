@@ -82,6 +82,7 @@ class Profile {
     double speed_;
 };
 
+/// Ramps to the goal, clamped to the limits, and holds it.
 Profile speedProfile(const Axis& axis, const AxisLimits& limits) {
     Profile profile(axis.speed);
     profile.rampTo(std::clamp(axis.goal.value, -limits.max, limits.max), limits.accel);
@@ -89,6 +90,9 @@ Profile speedProfile(const Axis& axis, const AxisLimits& limits) {
     return profile;
 }
 
+/// Returns the fastest profile that ends at rest at a distance: brake, ramp to a peak, hold, ramp
+/// down. The peak is the top speed, or that from which braking just suffices. Within kUnitTolerance
+/// of the way in which it comes to rest, it brakes at once, so that rounding starts no new ramp.
 Profile distanceProfile(const Axis& axis, const AxisLimits& limits) {
     const double accel = limits.accel;
     double left = axis.goal.value, speed = axis.speed;
@@ -380,6 +384,7 @@ bool Motion::arrived() const {
 
 void Motion::halt() { drive = turn = side = {}; }
 
+/// Runs the axes from one change of acceleration to the next.
 Advance advance(const Motion& from, const MotionLimits& limits, const double duration) {
     Advance to{.motion = from};
     if (!(limits.drive.accel > 0 && limits.turn.accel > 0)) {

@@ -27,6 +27,8 @@ constexpr std::int32_t kSide = 12, kCorner = 17;
 /// that is thicker than kThin lies between them.
 constexpr double kNear = 0.5, kThin = 0.01;
 
+/// Returns a grid over the box with cells of kCell, or larger ones, so that there are at most
+/// kMaxCells.
 Grid gridOver(const Box2& box) {
     const double width = std::max(box.width(), PathFinder::kCell);
     const double depth = std::max(box.depth(), PathFinder::kCell);
@@ -135,6 +137,7 @@ std::optional<std::size_t> PathFinder::nearestCell(Point2 to, const Box2& box, T
     return best;
 }
 
+/// Returns true if the circle with the margin meets a spot somewhere on the way.
 bool PathFinder::isInSpot(const Segment2& way) const {
     return std::any_of(spots_.begin(), spots_.end(), [&](const Spot& spot) {
         const double apart = reach_ + spot.radius;

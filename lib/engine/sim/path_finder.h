@@ -35,6 +35,10 @@ namespace ispace {
 /// A way steps from cell to cell across sides, at a cost of 12, or corners, at 17, and is then
 /// straightened where the straight line is free. It keeps the radius and kMargin away from
 /// obstacles and from holes in the floor. Movers are ignored, but see around().
+///
+/// Ends of ways need not be free: a point counts as the nearest free cell within 0.5 m of it that
+/// no body thicker than 1 cm parts from it, and the pieces between are not tested, so that a mover
+/// at a wall gets away and to a goal beside one. Pilots steer there, or give the point up.
 class PathFinder {
   public:
     static constexpr double kMargin = 0.05, kCell = 0.1;
@@ -67,9 +71,11 @@ class PathFinder {
     /// Returns the points of the shortest way after its first, up to `to`; empty without a way.
     /// Searches mostly the cells towards the goal.
     [[nodiscard]] std::vector<Point2> wayBetween(Point2 from, Point2 to) const;
-    /// Returns the length of the way, not yet straightened, in metres; empty without a way.
+    /// Returns the length of the way, not yet straightened, from cell to cell, in metres; empty
+    /// without a way. O(1)
     [[nodiscard]] std::optional<double> length(const Field& field, Point2 to) const;
-    /// Returns the points of the way after its first, up to `to`; empty without a way.
+    /// Returns the points of the way after its first, up to `to`; empty without a way. \pre the
+    /// field is of this finder
     [[nodiscard]] std::vector<Point2> way(const Field& field, Point2 to) const;
     /// Ways from one point to some cells, and a goal among these.
     struct Approach {

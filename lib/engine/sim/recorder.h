@@ -108,8 +108,10 @@ class Recorder {
     static std::vector<std::string> growingFilesIn(const std::string& folder);
     static std::vector<std::string> filesIn(const std::string& folder);
 
-    /// Records the state after a step; flushes if 0.1 s have passed. Without a frame_taker it also
-    /// writes the readings and the frames that are due; otherwise finishStep() does that.
+    /// Records the state after a step; flushes if 0.1 s have passed, or a megabyte was written
+    /// since. Without a frame_taker it also writes the readings and the frames that are due;
+    /// otherwise finishStep() does that. \throws as flush(): the record then ends, and each further
+    /// call throws the same; FormatError beyond RecordOptions::max_bytes
     void record(World& world);
     /// Writes the readings of the step recorded last, until about then. \returns true once that is
     /// done: the world may then go on, or be changed

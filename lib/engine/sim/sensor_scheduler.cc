@@ -160,6 +160,7 @@ void SensorReader::jumped() {
     last_places_.reset();
 }
 
+/// Fixes what readings depend on, and leaves the rays to later.
 void SensorReader::begin(SimTime time, const Movers& movers) {
     finish();
     floor_.follow(movers);
@@ -359,6 +360,7 @@ void SensorReader::updateBodies(const Movers& movers) {
     kept_bodies_.reset();
 }
 
+/// Builds the bodies that stop rays, of those that may meet rays at these heights (all, if empty).
 void SensorReader::setBodies(const MoverPoses& places, std::span<const double> heights,
                              MovingBodies& bodies) const {
     // Kept for its memory.
@@ -414,6 +416,7 @@ void SensorReader::integrate(std::size_t sensor) {
     reading.value = inertia;
 }
 
+/// An instantaneous scan is cast at once; one that takes time follows its beams.
 void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*time*/) {
     SensorReading& reading = readings_[sensor];
     Scan& scan = std::get<Scan>(reading.value);
@@ -426,6 +429,7 @@ void SensorReader::measure(const Laser& laser, std::size_t sensor, SimTime /*tim
     sweep(laser, sensor);
 }
 
+/// Each tag bursts for this receiver alone: it hears the same, however many others listen.
 void SensorReader::hear(std::size_t sensor, SimTime time) {
     SensorReading& reading = readings_[sensor];
     Sensor receiver = sensors_[sensor];

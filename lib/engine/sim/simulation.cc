@@ -121,6 +121,7 @@ void Simulation::endIfReached() {
     (holds_ ? paused_ : finished_) = true;
 }
 
+/// Gives the commands of the script that are due; those that cannot be carried out become events.
 void Simulation::giveScripted() {
     for (; next_ < script_.size() && script_[next_].time <= world_->time(); ++next_) {
         const TimedCommand& timed = script_[next_];
@@ -273,6 +274,8 @@ void Simulation::seek(SimTime time) {
     } while (!seekSome(time, WallTime::max()));
 }
 
+/// Steps all worlds forward together: none can be sought by itself, as movers go from one to
+/// another.
 bool Simulation::seekTogether(SimTime time, WallTime until) {
     if (time < world_->time()) return false;
     while (world_->time() + world_->stepLength() <= time && !isReplayed()) {
@@ -299,6 +302,7 @@ bool Simulation::seekSome(SimTime time, WallTime until) {
     return true;
 }
 
+/// Takes one step of this world and of those that it leads.
 void Simulation::step() {
     tellScripted();  // those of the start, before there were subscribers
     for (const auto& preparer : preparers_) preparer();
@@ -409,6 +413,8 @@ std::optional<WallTime> Simulation::run(WallTime now, nanoseconds budget) {
     return next;
 }
 
+/// Takes the steps that are due, until the budget is used up, a change has to be made, or a record
+/// waits for its frames. \returns the time of the next call
 std::optional<WallTime> Simulation::runDue(WallTime now, nanoseconds budget) {
     if (finished_) return std::nullopt;
     const bool follows = clock_.kind == Clock::Kind::Real;

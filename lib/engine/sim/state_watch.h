@@ -19,7 +19,8 @@ namespace ispace {
 class World;
 
 /// Returns the states that sensors report and those of the room's actuators, at the newest
-/// readings.
+/// readings: actuators first, then sensors in their order. Numbers have their shortest text, lists
+/// commas, and an empty one is "-".
 std::vector<RoomState> statesOf(const World& world);
 
 /// Reports the states of a world that change, compared with those at its beginning. Reads only the

@@ -18,6 +18,8 @@
 
 namespace ispace {
 
+/// Builds meshes and levels that the sensors of the scene need, so that no reading has to wait for
+/// them.
 SceneResources::SceneResources(std::shared_ptr<const Scene> made_of, const RunOptions& options,
                                const RayScenes::Meshes& meshes, const SceneResources* before)
     : scene(std::move(made_of)),
@@ -182,6 +184,7 @@ void World::Data::tell(std::size_t mover) {
     state.told_last = time;
 }
 
+/// The state may be any: bounds of room and speed start anew.
 void World::Data::put(std::size_t mover, const RobotStatus& status) {
     moved = moved || status.pose != motions[mover].pose;
     if (moved) sensors.moved();
@@ -256,6 +259,7 @@ void World::Data::end(std::size_t mover, Outcome outcome) {
     ends.push_back({mover, std::exchange(states[mover].running, 0), outcome, time});
 }
 
+/// Returns a bound of the way of any mover in one step, rounding included.
 double World::Data::longestStep() const {
     double fastest = 0;
     for (std::size_t i = 0; i < movers.size(); ++i) {
