@@ -149,6 +149,7 @@ Segment2 midLine(const Polygon& bar) {
 
 }  // namespace
 
+/// Places are even along each bar and half a step from its ends, at least one for each bar.
 std::vector<Point3> framePlaces(const Environment& environment, double step) {
     assert(step > 0);
     std::vector<Point3> places;

@@ -222,6 +222,8 @@ struct ExactGain::Data {
         }
     }
 
+    /// One overlay for all sensors: what one sensor alone sees is what moving it may lose, so each
+    /// later move needs that and the unseen floor only.
     void prepareAll() {
         std::vector<Layer> layers;
         addFloors(floors, layers);

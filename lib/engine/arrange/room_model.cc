@@ -96,6 +96,7 @@ void RoomModel::countStanding(const std::vector<SensorView>& views, std::size_t 
     }
 }
 
+/// Standing sensors serve first; what they achieve is capped at 65535.
 void RoomModel::countDemand(std::span<const SensorClass> kinds) {
     const Demand& demand = *options_.demand;
     for (const SensorClass& kind : kinds) demand.mustServe(kind.model, kind.id);

@@ -268,6 +268,8 @@ void mustBeFew(std::size_t walls, int times) {
 
 }  // namespace
 
+/// The count is checked before any site is made. Curves that are no wall, of fewer than two
+/// corners, have no places.
 std::vector<Site> wallSites(const Environment& environment, double height, double dist, int times) {
     assert(times >= 0);
     const Slice slice = wallSlice(environment, height);

@@ -74,6 +74,8 @@ std::string BuildingRun::place(const std::string& mover, const std::optional<Roo
     return data_->place(who, room, pose);
 }
 
+/// Ends trips and commands as stopped, empties lifts and queues, then begins the recorded trips
+/// again. Ids of commands go on, so that no client takes a new end for an old one.
 void BuildingRun::Data::restart() {
     struct Before {
         std::size_t room;

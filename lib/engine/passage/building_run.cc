@@ -42,6 +42,7 @@ BuildingRun::Data::Data(const SiteScene& the_building, const BuildingRunOptions&
     });
 }
 
+/// The first room leads: it has the clock, and the others step with it.
 void BuildingRun::Data::addRoom(Room room, std::shared_ptr<const Scene> scene) {
     if (!options.replay.empty()) scene = openReplay(room, *scene);
     RunOptions run = options.run;
@@ -85,6 +86,8 @@ void BuildingRun::Data::showSensors() {
     }
 }
 
+/// Storeys come first, so that a room has the index of its storey; then, per passage, a cabin or a
+/// room for each flight.
 void BuildingRun::Data::addRooms() {
     for (std::size_t i = 0; i < building.scenes.size(); ++i)
         addRoom({.id = building.document.storeys[i].id, .storey = i},
@@ -112,6 +115,8 @@ void BuildingRun::Data::addRooms() {
     }
 }
 
+/// A mover takes its own record and those it carries along from room to room. Ways are found once
+/// per size of mover.
 void BuildingRun::Data::addTravellers() {
     for (std::size_t i = 0; i < building.scenes.size(); ++i) {
         const World& world = *rooms[i].world;

@@ -41,6 +41,8 @@ std::optional<Route> BuildingRun::Data::routeFrom(const Traveller& who, std::siz
     return all.route(storey, at, to.room, to.at, ability, waits(), trip.only);
 }
 
+/// Checks the ways to all goals before anything changes: a trip that is refused leaves the command
+/// under way as it was. Later goals are checked from the one before, with the queues of now.
 TripAnswer BuildingRun::Data::begin(const std::string& mover, BuildingTrip trip) {
     Traveller& who = travellers.find(mover)->second;
     const auto& storey = rooms[who.room].storey;
@@ -212,6 +214,8 @@ void BuildingRun::Data::advance() {
     new_ends.clear();
 }
 
+/// Called between steps. A person that lies down ends the trip as stopped; one that carries what
+/// passages do not take, as unreached.
 void BuildingRun::Data::advanceTrip(const std::string& id, BuildingTrip& trip) {
     Traveller& who = travellers.find(id)->second;
     if (who.is_person && rooms[who.room].storey) {

@@ -79,6 +79,8 @@ std::size_t LiftReader::stopOf(std::size_t lift, std::string_view storey) const 
     return static_cast<std::size_t>(found - storeys.begin());
 }
 
+/// Reads ahead to the next row of a lift that the building has, as others may have been removed
+/// since; leaves row_ empty at the end.
 void LiftReader::readRow() {
     std::vector<std::string_view> fields;
     for (row_.reset(); !row_;) {

@@ -192,6 +192,7 @@ void BuildingRun::Data::enter(Traveller& who, BuildingTrip& trip) {
         enterFlight(who, trip);
 }
 
+/// All or nothing: without a free place, an open door and room in the cabin it sets out again.
 void BuildingRun::Data::enterCabin(Traveller& who, BuildingTrip& trip) {
     const Leg& leg = trip.legs[trip.leg];
     const StoreyLink& passage = passages[leg.passage];
@@ -213,6 +214,7 @@ void BuildingRun::Data::enterCabin(Traveller& who, BuildingTrip& trip) {
     sendStraight(who, trip, {passage.frame * door, passage.frame * *slot});
 }
 
+/// The room of a flight has its foot at x = 0; movers up and down keep apart by lanes.
 void BuildingRun::Data::enterFlight(Traveller& who, BuildingTrip& trip) {
     const Leg& leg = trip.legs[trip.leg];
     const StoreyLink& passage = passages[leg.passage];

@@ -45,6 +45,7 @@ std::string BuildingRun::Data::refusal(std::size_t room, Point2 at, const Travel
            formatDouble(at.y) + ": " + reason;
 }
 
+/// Obstacles are those of now, kept per storey and height until the world changes.
 std::string BuildingRun::Data::bodyText(std::size_t storey, Point2 at, const Traveller& who) {
     const World& world = *rooms[storey].world;
     const Environment& now = world.scene().environment;

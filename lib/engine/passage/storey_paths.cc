@@ -36,6 +36,8 @@ constexpr std::size_t kMaxPathsOut = 32;
 /// The floor before a door that waiting movers leave free, metres ahead.
 constexpr double kLeftFree = 2.5;
 
+/// Fills in what a record leaves out: a door of 0.9 m, at most as wide as the cabin, and a top
+/// straight ahead.
 StoreyLink passageOf(const SiteScene& building, const StoreyPassage& from) {
     StoreyLink passage{.id = from.id, .storeys = from.storeys};
     const Record& record = from.record;
@@ -102,6 +104,8 @@ StoreyPaths::StoreyPaths(const SiteScene& building, const std::vector<StoreyLink
     for (Landing& landing : landings_) addSpots(landing);
 }
 
+/// The landing is the free point nearest to the door, straight before it; a stop without one is not
+/// used.
 void StoreyPaths::addLift(const SiteScene& building, std::size_t index) {
     const StoreyLink& passage = (*passages_)[index];
     for (std::size_t stop = 0; stop < passage.storeys.size(); ++stop) {

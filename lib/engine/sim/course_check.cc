@@ -57,6 +57,8 @@ class CourseCheck {
         return obstaclesOf(scene_.environment, going);
     }
 
+    /// Checks each leg by itself, from rest: after a leg that fails it goes on from the goal, if
+    /// the mover has room there, else from where it gave up. So one bad leg leads to one finding.
     void check(std::size_t record, std::size_t index) {
         const Mover& mover = movers_[index];
         const Obstacles& obstacles = obstacles_.at(mover.model.height);
@@ -120,6 +122,8 @@ class CourseCheck {
         return std::nullopt;
     }
 
+    /// Names the nearest cause: a body at the goal, else one across the line, else one that leaves
+    /// less room than the mover needs.
     void report(std::size_t record, const Mover& mover, Point2 from, Point2 goal) {
         const Obstacles& obstacles = obstacles_.at(mover.model.height);
         const double radius = mover.model.radius;

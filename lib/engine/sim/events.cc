@@ -176,6 +176,8 @@ void EventLog::Data::tellUnreached() {
         put({.kind = EventKind::Unreached, .id = walkers[point.mover].id, .place = point.at});
 }
 
+/// Tells all entries of a step before all exits: by its events a mover that goes on to a zone that
+/// adjoins is always in one. The edge of a zone is part of it.
 void EventLog::Data::tellZones() {
     if (!wants(EventKind::Enter) && !wants(EventKind::Leave)) return;
     std::vector<Event> left;
@@ -203,6 +205,7 @@ void EventLog::Data::tellZones() {
     for (Event& event : left) put(std::move(event));
 }
 
+/// Per mat, those who step on it come before those who leave.
 void EventLog::Data::tellMats() {
     if (!wants(EventKind::Mat)) return;
     const FloorSensors& floor = world->floorSensors();
@@ -233,6 +236,7 @@ void EventLog::Data::tellGates() {
              .value = passage.in ? 1 : 0});
 }
 
+/// Looks once in kLookEvery and only if a mover has moved: a sight of less than that may be missed.
 void EventLog::Data::tellSight() {
     if (!wants(EventKind::Seen) && !wants(EventKind::Lost)) return;
     const std::int64_t now = world->time() / kLookEvery;

@@ -106,6 +106,10 @@ void Navigator::leave(SimTime time) {
         state_ = State::Arrived;
 }
 
+/// In this order: pauses, arrives, gives up a point that it has not come nearer to for kPatience,
+/// keeps aside, and goes straight on to a stop that it circles. Else takes the free heading nearest
+/// to the direct one, at half the speed again and again while there is none; if there is none at
+/// all it stands, and then steps aside.
 void Navigator::walk(const SteeringState& helm, Motion& motion) {
     if (helm.time < pause_until_) return stand(motion);
     const Vec2 way = course_.path[next_] - motion.pose.position;
@@ -187,6 +191,8 @@ void Navigator::stepAside(const SteeringState& helm, const Steering& steering,
     aside_until_ = helm.time + simSeconds(kAside + 2 * random());
 }
 
+/// Turns its aim a little every few seconds; before a wall to the free heading nearest to it, then
+/// back, and in a corner to any. Draws come from the seed and the mover alone, so a run repeats.
 void Navigator::wander(const SteeringState& helm, Motion& motion) {
     constexpr double kBend = 30, kOften = 2, kSeldom = 4;
     constexpr double kMinValue = 0.5;  // seconds

@@ -175,6 +175,8 @@ bool PathFinder::isOverHole(const Segment2& way) const {
     });
 }
 
+/// A cell behind a thin wall does not count: the line to its middle has to keep kThin from all
+/// bodies. Empty for points far outside, without overflow.
 std::optional<std::size_t> PathFinder::cellNear(Point2 p) const {
     const double size = grid_.limits.width() / grid_.columns;
     const Point2 at = grid_.toCells(p);

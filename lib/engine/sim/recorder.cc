@@ -211,6 +211,7 @@ void Recorder::Data::remember(const World& world) {
     flushed_all = false;
 }
 
+/// Looks only if the records of the world have changed.
 void Recorder::Data::lookAtSensors(const World& world) {
     if (std::exchange(changes, world.changes()) == world.changes()) return;
     receivers.clear();
@@ -321,6 +322,8 @@ void Recorder::Data::appendEvents() {
     for (LineFile* const file : {&events, &states, &activities, &tracks}) file->endStep(steps);
 }
 
+/// Rows of a step are appended at once, but its readings later (finishStep()): until then the step
+/// is open.
 void Recorder::Data::append(World& world) {
     if (steps % stride == 0) {
         appendRobotRows(robots.pending, world, robot_texts, robot_columns.kept);
@@ -357,6 +360,8 @@ std::uint64_t Recorder::Data::size() const {
            pictures.size() + depths.size() + scenes.size();
 }
 
+/// Rows first, then their number: after a crash in between, the record tells fewer steps than its
+/// files hold, not more.
 void Recorder::Data::writeLines() {
     for (LineFile* file : stepFiles()) file->flush();
     // While readings of this step lack, the step before may have to be the last.

@@ -16,6 +16,8 @@ struct SensorReader::Stage {
     std::vector<Angle> swings;
 };
 
+/// The same stage until a body moves: pictures of one moment share it, and the photographer places
+/// bodies once.
 std::shared_ptr<const SensorReader::Stage> SensorReader::stage(const Movers& movers) {
     if (!std::exchange(pictures_moved_, false)) return stage_;
     std::vector<Pose3> poses;

@@ -32,6 +32,8 @@ constexpr std::size_t kTogether = 64;
 
 }  // namespace
 
+/// Chunks have a constant size and separate lists, so results are the same for any number of
+/// threads.
 void World::Data::proposeAll() {
     if (std::exchange(moved, false)) traffic.rebuild(motions);
     if (!longest_step) longest_step = longestStep();
@@ -111,6 +113,7 @@ void World::Data::setLimits(std::size_t mover) {
     limits.drive.top = (1 - rough) * speed;
 }
 
+/// Most steps need no search: only once ways have used up the clearance is it measured anew.
 std::optional<std::size_t> World::Data::elementAhead(std::size_t mover) {
     const Move& move = moves[mover];
     MoverState& state = states[mover];
@@ -160,6 +163,8 @@ bool World::Data::mayMeet(std::size_t mover) {
     return may_meet;
 }
 
+/// The parallel part changes only the mover itself and its chunk, and reads of others no more than
+/// places and proposals.
 void World::Data::settle() {
     const auto look = [this](Chunk& chunk) {
         std::erase_if(chunk.doubtful, [&](std::size_t mover) {
@@ -190,6 +195,7 @@ void World::Data::settle() {
     }
 }
 
+/// A bump stops a navigated mover for this step only; any other stalls, which ends its command.
 void World::Data::collide(const Collision& collision) {
     Move& move = moves[collision.robot];
     states[collision.robot].bump = move.end() - move.start();
@@ -230,6 +236,8 @@ void World::Data::finish(std::size_t mover, Chunk& chunk) {
     }
 }
 
+/// Lists are in order of rank, that of robots before people: clients see the same order for any
+/// number of threads.
 void World::Data::apply() {
     std::swap(motions, next_motions);
     const std::size_t before = ends.size();
@@ -257,6 +265,7 @@ void World::Data::apply() {
         end->id = std::exchange(states[end->robot].running, 0);
 }
 
+/// Swings the limbs by the way that the body has really gone: none after a collision.
 void World::Data::walk(std::size_t mover) {
     const std::size_t person = mover - scene->robots.size();
     const Motion& motion = next_motions[mover];

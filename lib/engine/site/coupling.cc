@@ -354,6 +354,8 @@ class RoomBuilder {
         std::vector<std::string> ids;
     };
 
+    /// Records of the storey come first, but a floor with openings is replaced, and automatic
+    /// ids are made anew. What other storeys add comes last, as meshes of triangles.
     Records build() {
         const Scene& base = *building_.scenes[own_];
         Records room{base.records, base.ids};
@@ -448,6 +450,8 @@ class RoomBuilder {
         return lowest;
     }
 
+    /// Openings between storeys of the room are open; others of its own storey only
+    /// with_all_openings. Steps stand on each storey of the room from which a flight leads up.
     void findOpenings() {
         std::vector<std::size_t> found;
         for (const std::size_t storey : storeys_) {
@@ -502,6 +506,7 @@ class RoomBuilder {
         triangles_.addLevel(cutOut({curveOf(outline)}, above), floorOf(storey) + plate.z);
     }
 
+    /// Adds what hides: floor, ceilings, opaque surfaces. Glass and what is only drawn is left out.
     void addStorey(std::size_t storey) {
         const Environment& room = building_.scenes[storey]->environment;
         const double floor = floorOf(storey);
@@ -693,6 +698,9 @@ bool Coupling::areStacked(std::size_t a, std::size_t b) const {
     return stacked[a][b];
 }
 
+/// A slab reaches from the top of the highest room below, of those under its outline, up to the
+/// floor; it is empty if there is none, or if that room is as high. O(storeys^2) tests of outlines,
+/// once.
 const std::vector<Coupling::Slab>& Coupling::slabs() const {
     return slabs_.get([this] {
         const std::vector<Storey>& storeys = building_.document.storeys;

@@ -71,6 +71,8 @@ void nameWholly(const SiteScene& building, std::size_t storey, std::span<const S
     for (UncoveredSpot& spot : coverage.report.unseen) spot.room = storeys[storey].id;
 }
 
+/// Adds areas, and weighs shares by them. A sum is unknown as soon as that of one storey is;
+/// figures of a single storey are copied.
 void addUp(SiteCoverage& building) {
     if (building.storeys.size() == 1) {
         const CoverageReport& report = building.storeys.front().report;

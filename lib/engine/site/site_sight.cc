@@ -156,6 +156,8 @@ class StoreyViews {
         });
     }
 
+    /// Computes a view in the frame of the lowest of the storeys, then moves it to its own:
+    /// buildings of like storeys need it once.
     void look(const ShadowCaster& caster, Job& job) const {
         const Storey& base = building_.document.storeys[job.storeys.front()];
         const Storey& from = building_.document.storeys[job.from];

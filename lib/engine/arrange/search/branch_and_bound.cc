@@ -150,6 +150,9 @@ struct Root {
     std::uint64_t closed = 0;  ///< upper bound of solutions with another candidate, fine
 };
 
+/// Excludes candidates of the whole problem: those that the bound excluded, if the value is no less
+/// than its cut, and those that its multipliers exclude now. Sets `closed` to an upper bound of
+/// solutions with any of them.
 RootRelaxation ruledOut(const Problem& problem, const Bound& bound, std::uint64_t value,
                         std::uint64_t& closed) {
     RootRelaxation root(problem);
@@ -162,6 +165,8 @@ RootRelaxation ruledOut(const Problem& problem, const Bound& bound, std::uint64_
     return root;
 }
 
+/// Makes the problem of the tree: without excluded candidates, and with alike cells merged.
+/// Excludes first, so that the large relaxation is gone before the reduced problem is built.
 Root rootOf(const Problem& problem, const Bound& bound, std::uint64_t value) {
     Root made;
     std::vector<std::vector<std::uint32_t>> kept;
@@ -220,6 +225,8 @@ class Tree {
             closed_ = relaxed_.most(result_.bound);
     }
 
+    /// The size of a batch does not depend on the number of threads, and results are added in its
+    /// order: so the tree is the same for any number. A stop leaves bounds that hold.
     SearchResult search(Progress& progress) {
         progress.begin("proving", 0);
         lowerBound();
@@ -332,6 +339,8 @@ class Tree {
     std::uint64_t mark_ = 0;  // of its search
 };
 
+/// A root is a way to divide the sensors among the kinds. The first n reduced costs of a kind sum
+/// to the most that n of its sensors gain, so each root begins with its own bound.
 void Tree::addRoots(const Root& root) {
     closed_ = root.closed;
     std::vector<std::vector<std::uint64_t>> gains;

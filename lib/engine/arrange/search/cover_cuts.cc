@@ -86,6 +86,7 @@ void CutProgram::add(CoverCut cut) {
     rows_.push_back(std::move(cut));
 }
 
+/// Continues from the last basis, which stays dual feasible as rows are added.
 bool CutProgram::solve(const Progress& progress) {
     glp_smcp how;
     glp_init_smcp(&how);
@@ -97,6 +98,8 @@ bool CutProgram::solve(const Progress& progress) {
     return code == 0 && glp_get_status(program_.get()) == GLP_OPT;
 }
 
+/// A column is taken at most once, so with any prices of at least 0 no cover costs less than their
+/// sum plus all negative reduced costs. Exact: the dual values of GLPK only suggest prices.
 CoverBound CutProgram::bound(double limit) const {
     const std::size_t n = core_.columns();
     CoverBound bound{0, std::vector<double>(n), std::vector<char>(n)};
@@ -135,6 +138,8 @@ CoverCut CutProgram::combined(const std::vector<std::pair<std::size_t, double>>&
     return cut;
 }
 
+/// Of each fractional basic column one cut; keeps those that cut deepest, by distance from the
+/// solution.
 std::size_t CutProgram::addCuts() {
     constexpr double kWhole = 0.05, kViolated = 0.02;
     constexpr std::size_t kMaxCuts = 40;

@@ -88,6 +88,7 @@ class GreedyPlacement {
         return kinds;
     }
 
+    /// Ties go to the first kind, and within it to the first candidate.
     bool placeNext() {
         const bool is_ordered = !basis_.problem.order.empty();
         BestCandidate best;
@@ -243,6 +244,8 @@ void placeRest(const SearchBasis& basis, bool per_cost, CoverageState& state, Pr
     GreedyPlacement(basis, {true, per_cost, 0}, state, progress).run();
 }
 
+/// With a budget alone (one sensor covers a cell, no limits of kinds, no connection, no stop) the
+/// better of both rules has at least (1 - 1/e)/2 of the best value (Leskovec et al. 2007).
 Solution placeGreedily(const Problem& problem, Progress& progress) {
     const SearchBasis basis(problem);
     const auto has_cost_of_first = [&](const SensorType& kind) {

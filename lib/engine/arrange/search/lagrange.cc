@@ -56,6 +56,8 @@ void RootRelaxation::keepOnly(const std::vector<std::vector<std::uint32_t>>& kep
     }
 }
 
+/// Cells that the solution sees more often than needed are worth nothing to one more sensor: they
+/// begin with 0, the others with their weight.
 std::vector<std::uint32_t> RootRelaxation::startFrom(const std::vector<Choice>& chosen) const {
     std::vector<std::uint16_t> multiplicities(problem_.cells(), 0);
     for (const Choice& choice : chosen) {
@@ -71,6 +73,7 @@ std::vector<std::uint32_t> RootRelaxation::startFrom(const std::vector<Choice>& 
     return multipliers;
 }
 
+/// Only with is_all an upper bound. Ties go to the smaller index.
 std::uint64_t RootRelaxation::evaluate(const std::vector<std::uint32_t>& multipliers, bool is_all) {
     setReducedCosts(multipliers);
     free_ = cells_.settled;
@@ -110,6 +113,8 @@ ISPACE_SIMD_CLONES std::uint64_t replace(const std::uint32_t* now, std::uint32_t
 
 }  // namespace
 
+/// Kinds of equal multiplicity share cell costs. `risen` sums all rises so far: a site that was
+/// weighed before is worth at most its value then plus the rises since.
 void RootRelaxation::setReducedCosts(const std::vector<std::uint32_t>& multipliers) {
     std::vector<std::uint32_t> costs;
     for (std::size_t k = 0, next = 0; k < kinds_.size(); ++k) {
@@ -127,6 +132,7 @@ void RootRelaxation::setReducedCosts(const std::vector<std::uint32_t>& multiplie
     }
 }
 
+/// Each site writes its values only, so threads need no order.
 void RootRelaxation::weighSites(std::size_t kind, std::span<const std::uint32_t> sites) {
     OfKind& own = kinds_[kind];
     const CellCosts& costs = cell_costs_[costs_of_[kind]];
@@ -205,6 +211,7 @@ void RootRelaxation::findTop(std::size_t kind, const std::vector<std::uint32_t>&
     std::sort(top.begin(), top.end(), is_better);
 }
 
+/// The subgradient: how often the chosen sensors see each cell, in parts of what it needs.
 void RootRelaxation::setCover() {
     std::fill(cover_.begin(), cover_.end(), 0.0F);
     for (const Choice& choice : chosen_) {
@@ -216,6 +223,7 @@ void RootRelaxation::setCover() {
     }
 }
 
+/// A site leaves the list once all of its candidates are excluded; later rounds are faster.
 std::uint64_t RootRelaxation::ruleOut(std::uint64_t cut) {
     std::uint64_t ruled_out = 0;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
@@ -243,6 +251,7 @@ std::uint64_t RootRelaxation::ruleOut(std::uint64_t cut) {
     return ruled_out;
 }
 
+/// Sites never leave the working set, unless all of their candidates are excluded.
 void RootRelaxation::widen(std::size_t count) {
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
         OfKind& own = kinds_[k];

@@ -44,6 +44,8 @@ Rank rankOf(const CoverageState& state) {
     return {state.value(), state.partialValue(), -cost};
 }
 
+/// Bounds of all positions need memory on each thread; positions that exceed it share the last
+/// slot.
 std::size_t slotsFor(const SearchBasis& basis) {
     std::size_t words = 1;
     for (const auto& sites : basis.site_full) words += basis.problem.cells() + sites.size();
@@ -133,6 +135,7 @@ LocalSearch::Slot& LocalSearch::slotAt(std::size_t position) {
     return slots_[index];
 }
 
+/// Bounds stay valid for any change of the other sensors, in whatever order positions are tried.
 void LocalSearch::renew(SiteBounds& known, std::size_t kind) {
     const SiteBlocks& blocks = basis_.site_blocks[kind];
     most_.resize(known.bounds.size());
@@ -170,6 +173,8 @@ BestCandidate LocalSearch::bestOf(const CoverageState& others, std::size_t kind,
                         bounds.bounds, known, allows, progress_);
 }
 
+/// The cache is shared by threads. A response depends on the set of the others alone, so it makes
+/// results no less repeatable; those found after a stop are not kept.
 Response LocalSearch::respond(const CoverageState& others, Slot& slot,
                               const std::optional<Response>& known) {
     const ResponseCache::Key key(others.chosen());
@@ -192,6 +197,7 @@ Response LocalSearch::respond(const CoverageState& others, Slot& slot,
     return best;
 }
 
+/// Only moves that raise the rank count: no cycle is possible.
 bool LocalSearch::move(CoverageState& state, std::size_t position) {
     const Rank before = rankOf(state);
     const std::uint64_t value = state.value(), parts = state.partialValue();
@@ -228,6 +234,7 @@ void LocalSearch::fill(CoverageState& state) {
     }
 }
 
+/// Sells sensors and spends what they cost: tries one of each kind first, then adds the best.
 bool LocalSearch::rebuyWithout(CoverageState& state, const std::vector<std::size_t>& positions) {
     const Rank before = rankOf(state);
     CoverageState rest = state;

@@ -179,6 +179,7 @@ Solution MinimumCostSearch::reduced(const Problem& cheaper, const Solution& solu
     return {state.chosen(), state.value()};
 }
 
+/// Greedy search did not reach the value: either no choice does, or only the full search finds one.
 MinimumCostCover MinimumCostSearch::unreached(const Solution& greedy) {
     MinimumCostCover cover;
     if (is_all_ || progress_.stopped()) {
@@ -304,6 +305,8 @@ bool MinimumCostSearch::isSetCover() const {
                [this](const SensorType& kind) { return kind.cost == problem_.kinds.front().cost; });
 }
 
+/// Order by use of time: quick bounds, a descent with few starts, then the full search of each
+/// level. A stop in between leaves a cover and bounds that hold.
 MinimumCostCover MinimumCostSearch::cheapen(Solution best) {
     const double most = costOf(problem_, best.chosen);
     const CostLevels levels(problem_.kinds, most);
@@ -343,6 +346,8 @@ Solution MinimumCostSearch::filled(const Solution& best) {
     return found.best.value > best.value ? trimmed(found.best, found.best.value) : best;
 }
 
+/// Unless greedy or stopped, also uses what the cost leaves: of the covers of this cost, it
+/// searches for the one of the most value.
 MinimumCostCover MinimumCostSearch::reached(const Solution& best, double cost_bound) {
     MinimumCostCover cover;
     cover.is_reached = true;

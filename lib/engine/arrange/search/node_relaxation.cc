@@ -31,6 +31,7 @@ NodeRelaxation::NodeRelaxation(const BranchNode& node)
     findSites();
 }
 
+/// Taken sensors settle the cells that they complete; of other cells fewer sensors are needed.
 void NodeRelaxation::settle(const std::vector<Choice>& chosen) {
     for (const Choice& choice : chosen) {
         const ReducedProblem::OfKind& kind = problem_.kinds[choice.kind];
@@ -63,6 +64,7 @@ void NodeRelaxation::findSites() {
     }
 }
 
+/// Any multipliers of at most the weights give a bound; those of the parent are near the best.
 std::vector<std::uint32_t> NodeRelaxation::start(const BranchNode& node) const {
     std::vector<std::uint32_t> multipliers = *node.multipliers;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
@@ -123,6 +125,7 @@ std::vector<std::uint32_t> NodeRelaxation::mostPromising(const OpenGroup& group,
     return best;
 }
 
+/// Working sites only accumulate, so a working bound comes closer to that of all.
 void NodeRelaxation::widen() {
     constexpr std::size_t kMinValue = 24, kPerSensor = 8;
     if (is_working_.empty())
@@ -145,6 +148,8 @@ void NodeRelaxation::widen() {
     }
 }
 
+/// Keeps one candidate more than a group has sensors: takeForced() tells by it what a replacement
+/// gains. Ties go to the smaller index, for repeatable trees.
 std::uint64_t NodeRelaxation::findBest(const std::vector<std::uint32_t>& multipliers, bool is_all) {
     free_ = problem_.settled;
     for (std::size_t i = 0; i < multipliers.size(); ++i)
@@ -186,6 +191,7 @@ std::vector<Choice> NodeRelaxation::chosen() const {
     return chosen;
 }
 
+/// \pre evaluate() came last: evaluateWorking() leaves old reduced costs of other sites
 void NodeRelaxation::ruleOut(std::uint64_t cut) {
     bool is_any = false;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -214,6 +220,7 @@ void NodeRelaxation::ruleOut(std::uint64_t cut) {
     if (is_any) findSites();
 }
 
+/// A candidate is forced if the next best in its place leaves no more than the cut.
 std::vector<Choice> NodeRelaxation::takeForced(std::uint64_t cut) {
     std::vector<Choice> forced;
     for (std::size_t g = 0; g < groups_.size(); ++g) {

@@ -75,6 +75,8 @@ class CoverTree {
     const Progress& progress_;
 };
 
+/// Ends once nothing is excluded any more: each exclusion may lead to reductions. Costs are whole
+/// numbers, so a bound closes the node once it rounds up to the best cost.
 bool CoverTree::isOpen(CoverCore& node, CoverBound& bound) {
     for (;;) {
         node.reduce();
@@ -101,6 +103,8 @@ std::vector<CoverCore> CoverTree::childrenOf(CoverCore node, bool uses_symmetry)
     return isOpen(node, bound) ? branch(node, bound, uses_symmetry) : std::vector<CoverCore>();
 }
 
+/// Branches on the row with fewest columns, the dearest of these: child k takes column k and
+/// excludes those before it, so the children have no cover in common.
 std::vector<CoverCore> CoverTree::branch(const CoverCore& node, const CoverBound& bound,
                                          bool uses_symmetry) {
     std::size_t shortest = 0;
@@ -132,6 +136,7 @@ std::vector<CoverCore> CoverTree::branch(const CoverCore& node, const CoverBound
     return children;
 }
 
+/// If progress says stop, open nodes yield their bounds: the minimum still holds.
 double CoverTree::search(CoverCore node, int depth) {
     if (progress_.stopped()) {
         // Prices came from the parent: a few rounds restore its bound.
@@ -148,6 +153,8 @@ double CoverTree::search(CoverCore node, int depth) {
     return least;
 }
 
+/// Costs of components add up. A component has to cost less than the best cover minus the bounds of
+/// the others, and each that is searched raises this sum: small ones come first.
 double CoverTree::searchParts(const CoverCore& node, std::vector<CoverCore> parts, int depth) {
     std::sort(parts.begin(), parts.end(),
               [](const CoverCore& a, const CoverCore& b) { return a.rows() < b.rows(); });
