@@ -192,7 +192,7 @@ void BuildingRun::Data::enter(Traveller& who, BuildingTrip& trip) {
         enterFlight(who, trip);
 }
 
-/// All or nothing: without a free place, an open door and room in the cabin it sets out again.
+/// Without a free place, an open door and room in the cabin it sets out again.
 void BuildingRun::Data::enterCabin(Traveller& who, BuildingTrip& trip) {
     const Leg& leg = trip.legs[trip.leg];
     const StoreyLink& passage = passages[leg.passage];

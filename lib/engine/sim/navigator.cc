@@ -108,8 +108,8 @@ void Navigator::leave(SimTime time) {
 
 /// In this order: pauses, arrives, gives up a point that it has not come nearer to for kPatience,
 /// keeps aside, and goes straight on to a stop that it circles. Else takes the free heading nearest
-/// to the direct one, at half the speed again and again while there is none; if there is none at
-/// all it stands, and then steps aside.
+/// to the direct one, at half the speed again and again while no heading is free; if it finds no
+/// heading at all it stands, and then steps aside.
 void Navigator::walk(const SteeringState& helm, Motion& motion) {
     if (helm.time < pause_until_) return stand(motion);
     const Vec2 way = course_.path[next_] - motion.pose.position;

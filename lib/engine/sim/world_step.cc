@@ -265,7 +265,7 @@ void World::Data::apply() {
         end->id = std::exchange(states[end->robot].running, 0);
 }
 
-/// Swings the limbs by the way that the body has really gone: none after a collision.
+/// Swings the limbs by the way that the body has really gone, 0 after a collision.
 void World::Data::walk(std::size_t mover) {
     const std::size_t person = mover - scene->robots.size();
     const Motion& motion = next_motions[mover];

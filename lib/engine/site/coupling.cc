@@ -450,7 +450,7 @@ class RoomBuilder {
         return lowest;
     }
 
-    /// Openings between storeys of the room are open; others of its own storey only
+    /// Openings between storeys of the room are open; others of the storey only
     /// with_all_openings. Steps stand on each storey of the room from which a flight leads up.
     void findOpenings() {
         std::vector<std::size_t> found;
@@ -699,7 +699,7 @@ bool Coupling::areStacked(std::size_t a, std::size_t b) const {
 }
 
 /// A slab reaches from the top of the highest room below, of those under its outline, up to the
-/// floor; it is empty if there is none, or if that room is as high. O(storeys^2) tests of outlines,
+/// floor; it is empty without such a room, or if that is as high. O(storeys^2) tests of outlines,
 /// once.
 const std::vector<Coupling::Slab>& Coupling::slabs() const {
     return slabs_.get([this] {

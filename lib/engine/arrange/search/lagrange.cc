@@ -56,7 +56,7 @@ void RootRelaxation::keepOnly(const std::vector<std::vector<std::uint32_t>>& kep
     }
 }
 
-/// Cells that the solution sees more often than needed are worth nothing to one more sensor: they
+/// Cells that the solution sees more often than needed do not gain by one more sensor: they
 /// begin with 0, the others with their weight.
 std::vector<std::uint32_t> RootRelaxation::startFrom(const std::vector<Choice>& chosen) const {
     std::vector<std::uint16_t> multiplicities(problem_.cells(), 0);

@@ -75,7 +75,7 @@ class CoverTree {
     const Progress& progress_;
 };
 
-/// Ends once nothing is excluded any more: each exclusion may lead to reductions. Costs are whole
+/// Ends once a round excludes no column: each exclusion may lead to reductions. Costs are whole
 /// numbers, so a bound closes the node once it rounds up to the best cost.
 bool CoverTree::isOpen(CoverCore& node, CoverBound& bound) {
     for (;;) {
