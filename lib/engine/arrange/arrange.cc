@@ -117,8 +117,8 @@ double boundOf(const SearchResult& result, const CoverageModel& model) {
     return model.isComplete() ? model.shareBound(result.bound) : 1;
 }
 
-/// Moves the sensors off their candidates. The bound of the candidates no longer holds then: that
-/// of any poses takes its place.
+/// Moves the sensors off their candidates. If one moves, the bound of the candidates holds no
+/// longer: that of any poses replaces it.
 void refineIn(Arrangement& result, CoverageModel& model, std::uint64_t before, Progress& progress) {
     const Refined refined = refine(model, result.sensors, before, progress);
     result.is_refined = true;
@@ -164,7 +164,7 @@ Measured measuredSite(Arrangement& result, const CoverageModel& model, CoverageO
 }
 
 /// Sets the figures of the written layout: coverage, area, value, and those of the objectives.
-/// Exact shares are computed only where a target of the whole floor is judged by them.
+/// Exact shares are computed only with a target of the whole floor.
 void measure(Arrangement& result, CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     const bool is_whole_floor = options.target && options.weights.isUniform() &&

@@ -9,10 +9,11 @@
 // leave their candidates (refine.h).
 //
 // Guarantees. `coverage` and `area` of a result are those that `coverage` prints for the written
-// layout, on its grid. No layout of the same candidates has a value above `bound`; poses between
-// candidates may, unless sensors were refined or a Prover is set. The result depends on input,
-// options and seed alone, for any number of threads and shards, unless progress says stop: then it
-// is the best layout so far, and `is_complete` is false.
+// layout, on its grid. No layout of the same candidates has a value above `bound`, for as many
+// sensors or the same budget; poses between candidates may, unless refining moved sensors or a
+// Prover found a bound over all poses. The result depends on input, options and seed alone, for any
+// number of threads and shards, unless progress says stop: then it is the best layout so far, and
+// `is_complete` is false.
 //
 // Costs. The views of candidates take most of the time and memory: sites * headings views, 4 bytes
 // for a run of cells. Candidates and the tree of Exact share options.max_bytes.
@@ -312,8 +313,9 @@ struct LayoutParts {
 };
 
 /// Builds a `.3dm`: the `environment` record, the records of `before` (if any) with its pending
-/// sensors placed, the new sensors, the `result`. A pending sensor keeps its position, so that a
-/// diff of both layouts shows poses alone. Shares are rounded, poses are exact.
+/// sensors placed, the new sensors, the `result`. The record of a pending sensor stays where it
+/// stands in the file, so that a diff of both layouts shows poses and the result alone. Figures of
+/// the result are rounded, poses are exact.
 Document layoutDocument(const LayoutParts& parts, const Document* before,
                         const std::vector<SensorGroup>& groups, const Arrangement& arrangement);
 

@@ -3,7 +3,7 @@
 //
 // The contour joins the ends of adjacent beams by straight lines: it cuts corners, and holds floor
 // behind objects that stand between two beams. Its area is therefore not that of the visible
-// region; the thesis' tables are made of it. O(beams) casts, and O(cells in its box).
+// region; the thesis' tables are made of it. O(beams) casts, and O(cells of the grid).
 #pragma once
 
 #include "base/cell_set.h"

@@ -5,17 +5,18 @@
 // A site is a point at one height, tilt and roll; its candidates differ in heading and share
 // storage. A level laser sees its visibility polygon within a sector, so the circle about a site is
 // cut at the limits of all sectors, each part is rasterised once, and a candidate is a range of
-// parts: 16 headings take hardly more time than one. A sensor with a field of view has a part for
-// each heading; sight of the plane is found once for all of them, and for several tilts if they
-// share SiteSights.
+// parts: a cell is reached once for all headings. A sensor with a field of view has a part for each
+// heading; sight of the plane is found once for all of them, and for several tilts if they share
+// SiteSights.
 //
-// Views are those of VisibleArea, cell by cell: tables and shared sights save time and change no
-// cell (candidate_views_test). Sites are scanned by several threads and added in order.
+// Of the cells that count, views hold those that VisibleArea has, unless lasers see by beams or
+// sensors are mounted with errors: tables and shared sights save time alone. Sites are scanned by
+// several threads and added in order.
 //
 //     PosedCandidates set(grid.size());
 //     const CandidateViews views(sight, grid, device, mount);
 //     addCandidates(set, views, sites, max_bytes, progress);
-//     const Pose3 best = set.pose(0);              // of the first heading of the first site
+//     const Pose3 first = set.pose(0);             // of the first heading of the first site
 #pragma once
 
 #include <algorithm>
@@ -102,7 +103,7 @@ class SiteSights {
     ~SiteSights();
     SiteSights(const SiteSights&) = delete;
     SiteSights& operator=(const SiteSights&) = delete;
-    /// Returns true if the sights of these sites fit in memory, 100 MB.
+    /// Returns true if the sights of these sites fit in 100 MB.
     [[nodiscard]] static bool isWorthwhile(std::span<const Site> sites, const Grid& grid);
 
     /// The sight of a site while one thread looks from there.

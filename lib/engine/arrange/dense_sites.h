@@ -2,8 +2,8 @@
 // Private to lib/engine/arrange: finds the walls along which candidates stand.
 //
 // A wall is a straight stretch of a curve with floor on its left, whatever elements it consists of.
-// Turns at corners are decided exactly; pieces of one wall are joined within kWeldDistance. Pure
-// functions.
+// The order of lines about a vertex is decided exactly; a vertex within kWeldDistance of a straight
+// line is no corner. Pure functions.
 #pragma once
 
 #include <span>
@@ -14,14 +14,14 @@
 namespace ispace {
 
 /// Returns the part of the slice at a height, metres, that belongs to walls, fences, rooms, doors
-/// and windows. O(n)
+/// and windows. O(n) once the level is known
 Slice wallSlice(const Environment& environment, double height);
 
 /// Returns the closed curves with the floor on their left: the boundaries of its regions, joined
 /// with the sheets that stand in it, which are followed along both sides. A sheet that touches no
 /// other line is a curve of two vertices. Sheets outside the floor are skipped. Ends of sheets
-/// within kWeldDistance of a boundary are welded to it; sheets that cross a boundary become curves
-/// by themselves. Deterministic. O(n log n)
+/// within kWeldDistance of a boundary are welded to it; if any crosses a boundary, all become
+/// curves by themselves. Deterministic. O(n log n)
 std::vector<Polygon> wallCurves(const std::vector<Region>& floor, std::span<const Segment2> sheets);
 
 /// Returns the corners of a closed curve: its vertices without duplicates and without those at

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tiles by bisection: the floor is clipped along the middle of the longer side of its part (columns
-// first), and each half is divided on, so a polygon is clipped O(log tiles) times. Prefix sums over
-// both axes then hold the weight to the left of and below each corner of a tile. Clipping by halves
-// keeps signed areas, also of curves that touch themselves; edges along a cut cancel out.
+// first), and each half is divided on, so each of its points is clipped O(log tiles) times. Prefix
+// sums over both axes then hold the weight to the left of and below each corner of a tile. Clipping
+// by halves keeps signed areas, also of curves that touch themselves; edges along a cut cancel out.
 #include "arrange/floor_tiles.h"
 
 #include <algorithm>

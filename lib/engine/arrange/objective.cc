@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows of the table, with the functions that only they need.
 #include "arrange/objective.h"
 
 #include <algorithm>

@@ -4,8 +4,8 @@
 // Each sensor covers at most as many cells as an area about its largest view holds
 // (maxCellsInView). With so many parts to give away, the best that any layout can do is to serve
 // the cells with the highest weight per missing sensor, the last one in part: the fractional
-// knapsack (G. B. Dantzig, Discrete-variable extremum problems, 1957), twice: over sensors per
-// cost, then over cells. Values round up.
+// knapsack (G. B. Dantzig, Discrete-variable extremum problems, 1957), twice: over kinds by cells
+// per cost, then over cells. Values round up.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sensors that add no value: which they are, and where they stand instead.
 //
-// A sensor is idle if no cell of weight falls below the required multiplicity without it.
-// Candidates for removal are taken from the last to the first, each judged after the removals
-// before it, so all that are found may go together; another order may find more. An idle sensor
-// moves to the site farthest from all others (T. F. Gonzalez, Clustering to minimize the maximum
-// intercluster distance, 1985, for its greedy choice), with the heading that sees most floor of low
-// multiplicity.
+// A sensor is idle if no cell of weight falls below the required multiplicity without it, and a
+// required connection remains. Candidates for removal are taken from the last to the first, each
+// judged after the removals before it, so all that are found may go together; another order may
+// find more. Of the sites that see floor an idle sensor moves to the one farthest from all others
+// (T. F. Gonzalez, Clustering to minimize the maximum intercluster distance, 1985, for its greedy
+// choice), with the heading that sees most floor of low multiplicity.
 #include "arrange/coverage_model.h"
 
 #include <algorithm>

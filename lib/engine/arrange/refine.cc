@@ -4,7 +4,7 @@
 //
 // For each length of steps, from 0.25 m and 11.25 degrees down by halves to 1 mm and 0.05 degrees,
 // sensors take turns until all in a row keep their poses. A sensor tries its 6 axial steps, then
-// those along two and three axes, and repeats a step that gains. Poses lie on a lattice of 0.1 mm
+// those along two and three axes, and repeats a step that gains. Steps lead to a lattice of 0.1 mm
 // and 0.001 degrees. Invariant: the gain of the moving sensor over all others only grows; the joint
 // value is measured at both ends, and decides.
 #include "arrange/refine.h"

@@ -3,8 +3,8 @@
 //
 // Coverage on a grid has no slope; the area of a union of views has. Regions are in closed form and
 // their union is an overlay (geom/overlay/overlay.h): areas err by its rounding. The result is
-// never worse than the start, and a local optimum: it has no bound of its distance from the best
-// layout.
+// never worse than the start. Unless stopped it is a local optimum for steps of a millimetre,
+// without a bound of its distance from the best layout.
 //
 //     const VisibleArea sight(scene.environment, 0);
 //     const Refined better = refine(scene, sight, sensors, {}, {}, progress);

@@ -3,8 +3,9 @@
 //
 // A PartProblem holds the cells and candidates of a part in the order of the site, so that equal
 // parts give equal results, candidate by candidate, and a choice maps back by its position. One
-// sensor more never covers less, and a bound for n sensors holds for fewer: a search that ends
-// below the one before it, or is stopped, takes that result and one more sensor.
+// sensor more never covers less, and a bound for n sensors holds for fewer: a search that does not
+// begin any more, or ends below the one before it although coverage need not be connected, takes
+// that result and one more sensor.
 #include "arrange/search_parts.h"
 
 #include <algorithm>

@@ -21,9 +21,9 @@ bool isSearchedByParts(const CoverageModel& model);
 /// Searches each part of a site with 1, 2, ... sensors, equal parts once, and shares numbers out:
 /// in [n - 1] the result for n sensors. The bound holds for every split. Weaker nowhere than a
 /// search of all rooms together, and faster: parts are small. The searches do not depend on each
-/// other, so that shards can divide each of them. Connected coverage is that of each
-/// part. Once progress says stop, further sensors of a part are arbitrary, with the part's total as
-/// their bound. Runs search() for each part and each number up to that of the kind.
+/// other, so that shards can divide each of them. Connected coverage is that of each part. Once
+/// progress says stop, further sensors of a part are arbitrary, with the part's total as their
+/// bound. Runs search() for each different part and each number up to that of the kind.
 /// \pre isSearchedByParts()
 std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& progress);
 

@@ -6,8 +6,8 @@
 // the end of a line the walk turns to the next line clockwise, so it goes around one face (as in a
 // doubly connected edge list; M. de Berg, O. Cheong, M. van Kreveld, M. Overmars, Computational
 // geometry, 2008, section 2.2). Directions are compared by exact orientation, without angles.
-// Invariant: either all steps of a curve have the floor on their left, or the sheets cross a
-// boundary, and then they become curves by themselves.
+// Invariant: either all steps of a curve have the floor on their left, or a sheet crosses a
+// boundary, and then all sheets become curves by themselves.
 #include "arrange/dense_sites.h"
 
 #include <algorithm>

@@ -214,7 +214,7 @@ void BuildingRun::Data::advance() {
     new_ends.clear();
 }
 
-/// Called between steps. A person that lies down ends the trip as stopped; one that carries what
+/// Called between steps. A person that rests ends the trip as stopped; one that carries what
 /// passages do not take, as unreached.
 void BuildingRun::Data::advanceTrip(const std::string& id, BuildingTrip& trip) {
     Traveller& who = travellers.find(id)->second;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slots by trial: points from the back corners to the middle of the door. A way out is a capsule
-// about the line to the door; a slot is free if its way meets no rider, and it stands in no way of
-// those that leave elsewhere.
+// Slots by trial: row by row from the back to the door, in each from the sides to the middle. A way
+// out is a capsule about the line to the door; a slot is free if its way meets no rider, and it
+// stands in no way of those that leave elsewhere.
 #include "passage/cabin.h"
 
 #include <algorithm>

@@ -2,7 +2,8 @@
 // Room in a lift's cabin: where riders stand, and which of them can get out.
 //
 // Riders are circles on a raster of 5 cm, from the back to the door. A slot leaves riders for other
-// stops a straight way out, so no cabin locks: of those that leave at a stop one always can.
+// stops a straight way out: of those that leave at a stop one always can, unless a rider has turned
+// back to another stop.
 #pragma once
 
 #include <limits>

@@ -108,7 +108,7 @@ class TripFinder {
         return std::pair(way.seen.value_or(0), way.length);
     }
 
-    /// Searched once for each pair, as a trip may use it many times.
+    /// Searched once for each pair: costs and the trip ask for it.
     const LeastSeenPath& wayBetween(std::size_t from, std::size_t to) {
         const auto [known, is_new] = ways_.try_emplace({from, to});
         if (!is_new) return known->second;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The way of an intruder through a building that sensors see least.
 //
-// Exact for the regions of the coverage, as findLeastSeenPath() is: no way over floors, stairs and
-// lifts is seen for less.
+// Exact for the regions of the coverage, as findLeastSeenPath() is: no way over floors and the
+// landings of stairs and lifts is seen for less, if all views are known exactly.
 //
-//     const LeastSeenTrip trip = findLeastSeenTrip(building, coverage, {"ground/door",
-//     "upper/safe"}); if (trip.whole.exists) print(trip.whole.seen.value_or(0), trip.whole.length);
-//     // metres
+//     const PathChoice of{"ground/door", "upper/safe"};
+//     const LeastSeenTrip trip = findLeastSeenTrip(building, coverage, of);
+//     if (trip.whole.seen) print(*trip.whole.seen, trip.whole.length);     // metres
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Phases of lifts as rows, written when they begin. Flushed row by row: there are few.
+// States of lifts as rows, written when a phase begins or the calls change, and flushed at once:
+// there are few.
 #include "passage/lift_record.h"
 
 #include <algorithm>

@@ -2,10 +2,10 @@
 // Landings, spots to wait, and routes.
 //
 // A landing is the first free point before a door, or the free point nearest to the end of a flight
-// that no wall parts from it. Spots are points of a raster, nearest by way first, off the floor
-// before doors and off the ways to other landings; where there are none, movers wait in the way
-// (waits_in_way), which landing_check.h reports. Dijkstra's algorithm over the landings is
-// quadratic in them, without a heap: there are few.
+// that no wall parts from it (any, if all are parted). Spots are points of a raster, nearest by way
+// first, off the floor before doors and off the ways to other landings; where there are none,
+// movers wait in the way (waits_in_way), which landing_check.h reports. Dijkstra's algorithm over
+// the landings is quadratic in them, without a heap: there are few.
 #include "passage/storey_paths.h"
 
 #include <algorithm>

@@ -4,11 +4,11 @@
 // A mover is a circle on the floor. Bodies count from the floor to the height of the mover. A step
 // is a path: it is tested as a whole, so that fast movers pass through no thin wall. Circles may
 // touch, and overlap by kContactTolerance, which absorbs rounding. One that overlaps a body by
-// rounding, or from the start, may only leave it.
+// rounding, or from the start, gets no deeper into it.
 //
 // A path that bends is replaced by the chords of 16 parts. With acceleration a the path of a part
-// strays from a uniform motion along its chord by at most a (T / 16)^2 / 8: 1.2e-8 m in a step of
-// 5 ms at 1 m/s2, and no more than 1/256 of Advance::lag.
+// strays from a uniform motion along its chord by at most a (T / 16)^2 / 8: 1.2e-8 m in a step of 5
+// ms at 1 m/s2.
 //
 //     const Obstacles obstacles(environment, 0.5, nullptr);
 //     const std::optional<std::size_t> element = obstacles.stop({{0, 0}, {2, 0}}, 0.25);
@@ -50,8 +50,9 @@ inline double squaredDistance(Point2 p, const Segment2& s) {
 
 /// Finds the lines of a band that block a circle, by a grid. Only overlap() knows the inside of
 /// solids: for the other queries a circle within one, off its lines, is free. Queries take time in
-/// proportion to the lines near the point; building takes O(n log n), after few changes of the
-/// environment O(changes). Thread-safe.
+/// proportion to the lines near the point; building takes O(n log n); after few changes of the
+/// environment only the changed elements are indexed, and O(elements) are numbered anew.
+/// Thread-safe.
 class Obstacles {
   public:
     /// \pre the band's pieces have owners

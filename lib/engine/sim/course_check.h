@@ -2,7 +2,7 @@
 // Checks paths of a scene before a run: `--check` names legs that a mover would give up.
 //
 // Walks are those of a run without noise and other movers, with steps of 5 ms: at most four million
-// of these, some ten seconds.
+// of these, in which the time to prepare walks counts, too.
 #pragma once
 
 #include <vector>

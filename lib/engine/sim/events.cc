@@ -205,7 +205,7 @@ void EventLog::Data::tellZones() {
     for (Event& event : left) put(std::move(event));
 }
 
-/// Per mat, those who step on it come before those who leave.
+/// Per mat, movers that step on it come before those that leave.
 void EventLog::Data::tellMats() {
     if (!wants(EventKind::Mat)) return;
     const FloorSensors& floor = world->floorSensors();
@@ -236,7 +236,8 @@ void EventLog::Data::tellGates() {
              .value = passage.in ? 1 : 0});
 }
 
-/// Looks once in kLookEvery and only if a mover has moved: a sight of less than that may be missed.
+/// Looks once in kLookEvery, and only if a mover has moved or the scene has changed: a sight of
+/// less than that may be missed.
 void EventLog::Data::tellSight() {
     if (!wants(EventKind::Seen) && !wants(EventKind::Lost)) return;
     const std::int64_t now = world->time() / kLookEvery;

@@ -4,8 +4,8 @@
 // Events are facts of steps, in a fixed order, and the same in every run of the same commands. They
 // are numbered; some ten thousand are kept, so that slow readers notice a gap by first().
 //
-// Costs. A kind without subscribers takes no time. Zones are tested for movers that moved; sight
-// takes a ray for each sensor and mover in its range, ten times a second, while movers move.
+// Costs. A kind without subscribers takes no time. Zones are tested for movers that moved; sight is
+// tested for each sensor and mover, ten times a second, while movers move.
 //
 //     EventLog log(world);
 //     log.want({EventKind::Collision, EventKind::Enter});
@@ -92,11 +92,13 @@ class EventLog {
 
     /// Subscribes to these kinds.
     void want(const EventKinds& kinds);
-    /// Cancels one subscription to each. A kind without subscribers forgets its state: a later
-    /// subscription starts anew. \pre want() was called for each
+    /// Cancels one subscription to each. Mat and State without subscribers forget what they knew,
+    /// and so do Enter with Leave and Seen with Lost once neither has any: a later subscription
+    /// starts anew. \pre want() was called for each
     void unwant(const EventKinds& kinds);
 
-    /// Reads the world after a step. Keeps all events of that step, however many there are.
+    /// Reads the world after a step. Keeps all events of that step until the next one, however many
+    /// there are.
     void stepped();
     /// Adds an event between steps, at the world's time. \pre Mark or Change
     void add(EventKind kind, std::string text, std::string other = {});

@@ -2,8 +2,8 @@
 // Goto: ways of movers of a world to a point, round bodies and movers that stand.
 //
 // A way is found once, from where the mover is, and handed to its pilot as a path. If the pilot
-// gives up, a new way is sought round those that stand, up to twice; if there is none, the first
-// one is tried again, as they may leave. Reasons for failure name a body, a door, or the nearest
+// gives up, a new way is sought round those that stand, up to twice; if there is none, one that
+// ignores them is tried, as they may leave. Reasons for failure name a body, a door, or the nearest
 // point with a way.
 #include <algorithm>
 #include <cassert>
@@ -136,8 +136,9 @@ std::string World::findPath(std::size_t mover, Command& command) {
     return "";
 }
 
-/// A way ends in one of four states: done and at rest, done but rolling, past the goal, or given
-/// up. Only at rest within kNear, and turned to the heading, is the command done.
+/// A way ends done and at rest, done but rolling, past the goal, stalled, or given up. Past the
+/// goal or stalled the mover returns to it, up to kMaxReturns times; then the command ends as the
+/// way did, where the mover stands. A heading is turned to last.
 bool World::Data::continueTrip(std::size_t mover, Outcome outcome) {
     GotoState& trip = *states[mover].trip;
     Motion& motion = motions[mover];
@@ -181,7 +182,8 @@ bool World::Data::continueTrip(std::size_t mover, Outcome outcome) {
     return false;
 }
 
-/// Keeps the present way if it is still free, so that a change elsewhere does not disturb movers.
+/// Keeps the present way if it is still free, so that a change elsewhere does not disturb movers,
+/// and if there is no other.
 void World::Data::avoidChange(std::size_t mover) {
     // Half of the margin by which ways keep away from bodies, as the mover strays from its way.
     const double reach = movers[mover].model.radius + PathFinder::kMargin / 2;

@@ -3,8 +3,9 @@
 //
 // A mover drives along its heading and turns about its centre (a unicycle; eq. 5.1-5.4 of the
 // thesis); one with an omnidirectional drive also moves sideways. Each axis speeds up and brakes at
-// a constant rate, so speed over time is a trapezoid. Distances and turns end exactly at
-// their goals, at rest, without a remainder that steps would add up.
+// a constant rate, so speed over time is a trapezoid. Turns end exactly at their headings and
+// distances at a remainder of exactly 0, at rest; positions are sums of the ways, with their
+// rounding.
 //
 // Positions are accurate to 1e-13 of the way. Two half steps give the same as a whole one, up to
 // rounding. Pure functions. Metres and seconds; the axis of turning counts degrees.

@@ -6,7 +6,7 @@
 //
 //     const std::vector<Mover> movers = moversOf(scene);
 //     PoseHistory trail(std::chrono::milliseconds(100));
-//     trail.add(time, poses, true);
+//     trail.add(time, where, true);                     // Movers after a step
 //     PoseHistory::Walk walk(trail, time - std::chrono::milliseconds(25));
 //     walk.to(0.01);                                    // 10 ms later: walk.from(), walk.to()
 #pragma once

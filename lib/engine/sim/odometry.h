@@ -7,7 +7,8 @@
 // of a step. The covariance of an estimate is propagated to first order
 // (scene/odometry_covariance.h).
 //
-// The model is that of S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics, 2005, section 5.4.
+// The model follows S. Thrun, W. Burgard, D. Fox, Probabilistic Robotics, 2005, section 5.4, but
+// for variances in proportion to the way, see strayed().
 //
 //     // 5 mm ahead, with a standard deviation of 0.7 mm:
 //     const Pose2 moved = strayed({{0.005, 0}, {}}, {0, 0, 1e-4, 0}, key);

@@ -4,8 +4,7 @@
 // A cell is free if the circle with its margin is free at its centre; corners are passed only
 // between free sides. Costs are 12 a side and 17 a corner, which is the root of two to within 0.2
 // percent, so sums are whole and 35 buckets hold all open cells. The way is read back from costs,
-// and a point is left out as long as the straight line past it is free: each corner that remains
-// has a body behind it.
+// and a point is left out as long as the straight line past it is free.
 #include "sim/path_finder.h"
 
 #include <tbb/parallel_for.h>
@@ -27,8 +26,8 @@ constexpr std::int32_t kSide = 12, kCorner = 17;
 /// that is thicker than kThin lies between them.
 constexpr double kNear = 0.5, kThin = 0.01;
 
-/// Returns a grid over the box with cells of kCell, or larger ones, so that there are at most
-/// kMaxCells.
+/// Returns a grid over the box with cells of kCell, or larger ones where the area has more than
+/// kMaxCells of these.
 Grid gridOver(const Box2& box) {
     const double width = std::max(box.width(), PathFinder::kCell);
     const double depth = std::max(box.depth(), PathFinder::kCell);

@@ -5,7 +5,7 @@
 // determination of minimum cost paths, 1968) with whole costs and buckets in place of a heap (R. B.
 // Dial, Algorithm 360: shortest-path forest with topological ordering, 1969). On open floor a way
 // from cell to cell is at most 8.4 % longer than the straight line, before it is straightened; ways
-// through gaps narrower than about a cell more than the circle may be missed.
+// through gaps narrower than about a cell more than the circle with its margin may be missed.
 //
 // Equal inputs give equal ways; ties between ways depend on the direction of search. A finder takes
 // a byte a cell, a Field four.
@@ -36,9 +36,10 @@ namespace ispace {
 /// straightened where the straight line is free. It keeps the radius and kMargin away from
 /// obstacles and from holes in the floor. Movers are ignored, but see around().
 ///
-/// Ends of ways need not be free: a point counts as the nearest free cell within 0.5 m of it that
-/// no body thicker than 1 cm parts from it, and the pieces between are not tested, so that a mover
-/// at a wall gets away and to a goal beside one. Pilots steer there, or give the point up.
+/// Ends of ways need not be free: a point counts as the nearest free cell within 0.5 m of it to
+/// which the straight line keeps 1 cm away from all bodies; for the circle the pieces between are
+/// not tested, so that a mover at a wall gets away and to a goal beside one. Pilots steer there, or
+/// give the point up.
 class PathFinder {
   public:
     static constexpr double kMargin = 0.05, kCell = 0.1;
@@ -72,7 +73,7 @@ class PathFinder {
     /// Searches mostly the cells towards the goal.
     [[nodiscard]] std::vector<Point2> wayBetween(Point2 from, Point2 to) const;
     /// Returns the length of the way, not yet straightened, from cell to cell, in metres; empty
-    /// without a way. O(1)
+    /// without a way. \pre the field is of this finder
     [[nodiscard]] std::optional<double> length(const Field& field, Point2 to) const;
     /// Returns the points of the way after its first, up to `to`; empty without a way. \pre the
     /// field is of this finder

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that grow by whole lines, frames that appear whole, and the text of rows.
 //
-// Written by system calls: errors name the file, a full disk is an error of the write, and links
-// are not followed (O_NOFOLLOW). The folder is locked by flock(2), which ends with the last process
-// that holds it.
+// Written by system calls: errors name the file, a full disk is an error of the write, and links to
+// files are not followed (O_NOFOLLOW). The folder is locked by flock(2), which ends with the last
+// process that holds it.
 #include "sim/record_files.h"
 
 #include <fcntl.h>

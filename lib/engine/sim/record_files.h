@@ -3,9 +3,9 @@
 //
 // A line is whole or absent: text is collected in memory and written up to its last newline, a torn
 // line of a full disk is taken back, and a file of an earlier run is replaced, not overwritten.
-// Links are refused, so that a record cannot be led elsewhere. Numbers have the shortest text that
-// reads back to the same double; a number that equals that of the row before is not formatted
-// again.
+// Links to files and folders are refused, so that a record cannot be led elsewhere; those to
+// devices and pipes are followed. Numbers have the shortest text that reads back to the same
+// double; a number that equals that of the row before is not formatted again.
 #pragma once
 
 #include <sys/types.h>

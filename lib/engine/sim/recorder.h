@@ -2,10 +2,10 @@
 // Records of runs: a folder of tables, readings and pictures that replays, coverage and other
 // programs read.
 //
-// Files hold whole lines up to the last flush, also after a crash; on a full disk they are cut
-// behind the last step that all of them hold. Except for timing.csv their text is the same in each
-// run of the same commands. Written by the thread that steps the world; frames may be taken in
-// others.
+// Files hold whole lines up to the last flush, also after a crash of the program, but are not
+// synchronised with the disk; on a full disk they are cut behind the last step that all of them
+// hold. Except for timing.csv their text is the same in each run of the same commands. Written by
+// the thread that steps the world; frames may be taken in others.
 //
 //     Recorder recorder("out", world, {.seed = 1}, &run.events(), &run.tracks());
 //     run.recordWith(recorder);

@@ -2,9 +2,9 @@
 // Private to lib/engine/sim: sonars and bumpers of robots, mats and gates of the floor.
 //
 // A sonar's cone is sampled by 37 rays, so an object narrower than their spacing may be missed: at
-// a cone of 30 degrees the rays are 0.3 m apart at 3 m. Gates count crossings by exact orientation:
-// a mover passes as often as it changes sides, also within a step. Mats and gates know the outlines
-// of bodies at their heights, not circles.
+// a cone of 30 degrees the rays are some 0.27 m apart at 3 m. Gates count crossings by exact
+// orientation: a mover passes as often as its steps, each a straight line, change sides. Mats and
+// gates know the outlines of bodies at their heights, not circles.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums of loads, and their bounds.
 #include "sim/run_limits.h"
 
 #include <algorithm>

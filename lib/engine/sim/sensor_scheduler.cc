@@ -160,7 +160,6 @@ void SensorReader::jumped() {
     last_places_.reset();
 }
 
-/// Fixes what readings depend on, and leaves the rays to later.
 void SensorReader::begin(SimTime time, const Movers& movers) {
     finish();
     floor_.follow(movers);

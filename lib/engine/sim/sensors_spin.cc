@@ -3,7 +3,7 @@
 //
 // Each beam has its own time. The carrier moves along an arc between stored moments of the trail,
 // and the bodies that a beam meets are those of the nearer moment. Where no mover has moved since
-// the scan began, all beams are cast at once.
+// the scan began, and the laser does not sweep, all beams are cast at once.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>

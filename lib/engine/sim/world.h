@@ -4,13 +4,14 @@
 // Guarantees. The same scene, options and commands between the same steps give the same states and
 // readings, bit by bit, for any number of threads: moves are proposed in parallel from one state
 // and settled in a fixed order, and random numbers are keyed by seed, id and step. No command moves
-// a robot into a body or another mover, within the tolerance of collision.h; movers that overlap at
-// the start can only part. Readings do not depend on when they are taken.
+// a robot into a body or another mover, within the tolerance of collision.h and, with errors of
+// motion, up to what they add to the longest step; movers that overlap at the start come no nearer.
+// Readings do not depend on when they are taken.
 //
 // Costs. A step takes O(movers) for movers apart from each other, on all cores; each looks up the
-// bodies near it once in about a metre of way. checkCrowding() bounds the pairs of movers near each
-// other before the first step. Sensors are read only when due, pictures and depth frames only on
-// request.
+// bodies near it once its way has used up the free distance to them, at most about a metre.
+// checkCrowding() bounds the pairs of movers near each other before the first step. Sensors are
+// read only when due, pictures and depth frames only on request.
 //
 // For one thread at a time, except for functions that say "in any thread". Metres and seconds,
 // poses in the frame of the room. Motion follows chapter 5 of the thesis.
@@ -65,8 +66,8 @@ struct Odometry {
     MotionAlphas alphas{};            ///< by which they grow; 0 without noise
 };
 
-/// How a command ended: it reached its goal, ran into a body, found no way, was replaced by another
-/// command, or was stopped.
+/// How a command ended: it reached its goal, ran into a body or a mover, gave its point up, was
+/// replaced by another command, or was stopped.
 enum class Outcome { Done, Stall, Unreached, Replaced, Stopped };
 
 /// The end of a command with an id.

@@ -259,7 +259,7 @@ void World::Data::end(std::size_t mover, Outcome outcome) {
     ends.push_back({mover, std::exchange(states[mover].running, 0), outcome, time});
 }
 
-/// Returns a bound of the way of any mover in one step, rounding included.
+/// Returns a bound of the way of any mover in one step, with rounding but without noise.
 double World::Data::longestStep() const {
     double fastest = 0;
     for (std::size_t i = 0; i < movers.size(); ++i) {

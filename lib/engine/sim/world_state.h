@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/sim: the state of a world, and the transition to the next scene.
+// The state of a world, and the transition to the next scene. Private to lib/engine/sim, but for
+// startWarnings().
 //
 // A scene and the structures built of it (SceneResources) are slow to make and do not depend on
-// movers, so another thread may make the next ones while the world goes on. Data is the rest:
-// motions, commands, readings. A change of the scene builds new Data from the old one and drops
-// that, which pictures under way may still share. All indices are those of Data's scene.
+// where movers are, so another thread may make the next ones while the world goes on. Data is the
+// rest: motions, commands, readings. A change of the scene builds new Data from the old one and
+// drops that, which pictures under way may still share. All indices are those of Data's scene.
 #pragma once
 
 #include <map>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of what joins the storeys of a building.
 //
-// A way off a flight is eight steps of 40 cm around its end, of which one must lead over free floor
-// without crossing a wall. Storeys that overlap in height are compared pair by pair, up to a
-// million corners: then the check says that it stopped.
+// A way off a flight is eight steps of 40 cm around its end, without those that lead back into the
+// flight, of which one must lead over free floor without crossing a wall. Storeys that overlap in
+// height are compared pair by pair, up to a million corners: then the check says that it stopped.
 #include <algorithm>
 #include <array>
 #include <cmath>

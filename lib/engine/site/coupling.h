@@ -44,8 +44,8 @@ struct FloorOpening {
 /// that are level have no opening between them.
 std::vector<FloorOpening> floorOpenings(const SiteScene& building);
 
-/// Returns, for each storey, which others one reaches from it upwards through openings.
-/// O(openings * storeys). \pre storeys are sorted by height
+/// Returns, for each storey, which others one reaches from it upwards through openings. O((openings
+/// + storeys) * storeys). \pre storeys are sorted by height
 std::vector<std::vector<bool>> storeysAbove(std::size_t storeys,
                                             std::span<const FloorOpening> openings);
 

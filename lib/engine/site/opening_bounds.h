@@ -2,8 +2,8 @@
 // Private to lib/engine/site: bounds of the openings between storeys.
 //
 // A sensor and the box about the openings in a floor span a box on the plane that is seen; sight
-// leads through all floors only where their boxes and the range have a common part. Never excludes
-// sight that exists. O(floors between) for a sensor.
+// leads through all floors only where their boxes and the range have a common part. Excludes no
+// sight within kSightBetweenStoreys and kSightThroughFloors. O(floors between) for a sensor.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes of storeys, and ids across a building. Rooms of equal documents become one scene, unless a
-// layout adds to one of them.
+// Scenes of storeys, and ids across a building. Storeys that share a document share a scene, but
+// for those to which a layout adds records.
 #include "site/site_scene.h"
 
 #include <algorithm>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scenes of a building, one for each storey, and reports and drawings of all of them.
 //
-// Ids are plain within a storey and begin with it across the building: "d1", "ground/d1". Files and
-// layouts of buildings have the latter; scenes the former, so that code for rooms needs no storeys.
+// Ids are plain within a storey and begin with it across the building: "d1", "ground/d1". Layouts
+// of buildings have the latter; rooms and scenes the former, so that code for rooms needs no
+// storeys.
 //
 //     const SiteScene building = makeSiteScene(std::move(document), {}, devices);
 //     const Scene& ground = *building.scenes.front();

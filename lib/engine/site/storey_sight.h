@@ -6,7 +6,7 @@
 // plane, and those seen past the rims of openings are removed.
 //
 //     const StoreySight sight(coupling, 0);
-//     if (sight.maySee(0, sensor, 1)) sight.look(0, {&sensor, 1}, 1, grid, parts);
+//     if (sight.maySee(1, sensor, 0)) sight.look(1, {&sensor, 1}, 0, grid, parts);
 #pragma once
 
 #include <cstddef>

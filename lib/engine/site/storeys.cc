@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Recognises and reads buildings: records, YAML, compiled files, sites of Open-RMF.
 //
-// Recognition looks at few bytes: words, the first line of content, and the top of the YAML tree; a
+// Recognition takes O(bytes): words, the first line of content, and the top of the YAML tree; a
 // file that is broken is left to the reader, whose error tells where. The budget of the building
 // pays for all its rooms, so that small files cannot name much work.
 #include "site/storeys.h"

@@ -2,10 +2,10 @@
 // The search tree: a loop over batches of open nodes.
 //
 // Invariant: closed_ bounds all solutions that are neither known nor in an open node, so the larger
-// of it and of the highest open bound is a bound of the problem. A batch is eight nodes for any
-// number of threads; they are branched against the same best value, and their results are taken in
-// order. While memory is short, the newest node comes first, so that the tree goes down before it
-// goes wide.
+// of it and of the highest open bound is a bound of the problem; of a shard that has dealt its
+// nodes, of its share. A batch is up to eight nodes, as memory allows, for any number of threads;
+// they are branched against the same best value, and their results are taken in order. While memory
+// is short, the newest node comes first, so that the tree goes down before it goes wide.
 #include "arrange/search/branch_and_bound.h"
 
 #include <tbb/parallel_for.h>
@@ -339,7 +339,7 @@ class Tree {
     std::uint64_t mark_ = 0;  // of its search
 };
 
-/// A root is a way to divide the sensors among the kinds. The first n reduced costs of a kind sum
+/// A root is a way to divide the sensors among the kinds. The n highest reduced costs of a kind sum
 /// to the most that n of its sensors gain, so each root begins with its own bound.
 void Tree::addRoots(const Root& root) {
     closed_ = root.closed;

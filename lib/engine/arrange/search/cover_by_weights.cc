@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Local search for set covers by weights of rows. Rows that stay uncovered gain weight, so that the
 // search leaves local optima without random restarts. Scores of columns are updated from the rows
-// that change: a step costs the neighbours of two columns.
+// that change.
 #include <algorithm>
 #include <cstddef>
 

@@ -4,7 +4,8 @@
 // Rounds evaluate all candidates; the trials between them evaluate the sites that were best in
 // earlier rounds. Of these, a trial weighs the best of the last one, and then sites that their last
 // weight plus all rises of cell costs since then does not exclude. Only rounds yield bounds and
-// exclude candidates. Ends when bound and value are near, or progress is slow.
+// exclude candidates. Ends when bound and value are near, progress is slow, or the rounds are used
+// up.
 #include "arrange/search/relaxation.h"
 
 #include <tbb/blocked_range.h>

@@ -3,9 +3,10 @@
 //
 // Greedy search with doubled budgets finds a first solution. Levels of cost then bound the search
 // from both sides: bisection by Lagrangian bounds raises the level that is proven to be too cheap,
-// and searches with a lower budget lower the best cost. If all cells must be seen and all sensors
-// cost the same, it is a set cover (cover_all.cc). At last the value is maximised at the cost that
-// was found. Invariant: no solution of level proven_ or below reaches the value.
+// and searches with a lower budget lower the best cost. If all cells must be seen once, all sensors
+// cost the same, and neither budget nor connection is asked, it is a set cover (cover_all.cc). At
+// last, unless greedy, the value is maximised at the cost that was found. Invariant: no solution of
+// level proven_ or below reaches the value.
 #include <algorithm>
 #include <functional>
 #include <queue>

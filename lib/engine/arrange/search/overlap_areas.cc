@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The areas of overlapBound(): candidates about the sensors of a solution, bundled by similar views
 // and joined in a tree, the spanning tree of most overlap (R. C. Prim, Shortest connection networks
-// and some generalizations, 1957). Any tree gives a valid bound; this one subtracts most.
+// and some generalizations, 1957). Any tree gives a valid bound; one of much overlap subtracts
+// much.
 #include <algorithm>
 #include <functional>
 #include <limits>

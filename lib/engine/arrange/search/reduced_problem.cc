@@ -4,8 +4,8 @@
 //
 // A set of parts is told by the exclusive or of 128 bits of each part (A. L. Zobrist, A new hashing
 // method with application for game playing, 1970), computed from differences along the cells: two
-// operations a run. Distinct sets would have equal bits with a probability of about 2^-128; no
-// other step of a proof depends on a hash.
+// operations a run. Two distinct sets have equal bits with a probability of about 2^-128, which
+// proofs neglect.
 #include "arrange/search/branch_node.h"
 
 #include <algorithm>

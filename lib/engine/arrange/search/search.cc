@@ -3,9 +3,9 @@
 // kicks, the overlap bound and the tree.
 //
 // Invariant: the best value only rises, the bound only falls, and both are valid after each stage,
-// so that a search may stop at any of them. A stage whose result is stored under its name, with the
-// fingerprint of the problem, is read instead of computed: shards and later runs take the same
-// course.
+// so that a search may stop at any of them. From the swaps on, a stage whose result is stored under
+// its name, with the fingerprint of the problem, is read instead of computed: shards and later runs
+// take the same course.
 #include "arrange/search/search.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The multiplicities of cells under the chosen sensors, and the finder of the best candidate.
 //
-// A sensor is added or removed in the time of its runs; values are sums of whole weights, so
-// removing undoes adding exactly. The finder takes sites from a heap by their bounds and ends when
-// the highest bound is below the best score. A score packs the gain and the partial gain in 64
-// bits; of equal scores the first candidate wins, whatever order sites are visited in.
+// A sensor is added or removed in the time of the cells that it sees; values are sums of whole
+// weights, so removing undoes adding exactly. The finder takes sites from a heap by their bounds
+// and ends when the highest bound is below the best score. A score packs the gain and the partial
+// gain in 64 bits; of equal scores the first candidate wins, whatever order sites are visited in.
 #include "arrange/search/greedy_search.h"
 #include "base/simd.h"
 

@@ -2,9 +2,9 @@
 // Minimum-cost set cover: reductions, local search, prices, cuts, and a tree.
 //
 // Components are solved one by one, also within the tree. The tree is opened breadth first to 64
-// subtrees, which are searched depth first in parallel, each from the same best cover, so that the
-// result does not depend on the number of threads. Invariant: the bound of a subtree holds for all
-// its covers that are cheaper than the best; infinite if it has no such cover.
+// subtrees or more, which are searched depth first in parallel, each from the same best cover, so
+// that the result does not depend on the number of threads. Invariant: the bound of a subtree holds
+// for all its covers that are cheaper than the best; infinite if it has no such cover.
 #include "arrange/search/set_cover.h"
 
 #include <tbb/parallel_for.h>
