@@ -9,11 +9,11 @@
 // leave their candidates (refine.h).
 //
 // Guarantees. `coverage` and `area` of a result are those that `coverage` prints for the written
-// layout, on its grid. No layout of the same candidates has a value above `bound`, for as many
-// sensors or the same budget; poses between candidates may, unless refining moved sensors or a
-// Prover found a bound over all poses. The result depends on input, options and seed alone, for any
-// number of threads and shards, unless progress says stop: then it is the best layout so far, and
-// `is_complete` is false.
+// layout, on its grid, with the same plane and pixel density. No layout of the same candidates has
+// a value above `bound`, for as many sensors or the same budget; poses between candidates may,
+// unless refining moved sensors or a Prover found a bound over all poses. The result depends on
+// input, options and seed alone, for any number of threads and shards, unless progress says stop:
+// then it is the best layout so far, and `is_complete` is false.
 //
 // Costs. The views of candidates take most of the time and memory: sites * headings views, 4 bytes
 // for a run of cells. Candidates and the tree of Exact share options.max_bytes.

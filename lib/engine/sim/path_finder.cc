@@ -22,8 +22,8 @@ namespace {
 constexpr double kMaxCells = 2.5e5;
 /// Costs of a side and of a corner.
 constexpr std::int32_t kSide = 12, kCorner = 17;
-/// A point may lie this far from the nearest free cell, in metres: movers stand at walls. No body
-/// that is thicker than kThin lies between them.
+/// A point may lie this far from the nearest free cell, in metres: movers stand at walls. The
+/// straight line between them keeps kThin away from all bodies.
 constexpr double kNear = 0.5, kThin = 0.01;
 
 /// Returns a grid over the box with cells of kCell, or larger ones where the area has more than
