@@ -18,9 +18,18 @@ namespace ispace {
 /// were given; starts with the first job. The thread exists regardless of TBB's limit on computing
 /// threads, which still applies inside a job, so clients are served meanwhile. If the system
 /// refuses to create a thread, the owner's thread runs each job at once.
+///
+/// All members are for one thread, the owner's. Results reach it only by collect() and its kin, in
+/// the order of jobs, so `deliver` needs no locks. If a delivery throws, the deliveries of jobs
+/// that had ended with it are dropped: rethrow only what ends the owner.
+///
+///     BackgroundWorker worker([&io] { asio::post(io, [] {}); });
+///     worker.give({[=] { *picture = render(scene); },
+///                  [=](const std::exception_ptr& failure) { if (!failure) send(*picture); }});
+///     worker.collect();  // later, once woken
 class BackgroundWorker {
   public:
-    /// \param wake called by the worker thread when a job is finished
+    /// \param wake called when a job is finished, by the worker thread (by give() without one)
     explicit BackgroundWorker(std::function<void()> wake);
     /// Waits for the running job and drops the others.
     ~BackgroundWorker();
@@ -34,6 +43,7 @@ class BackgroundWorker {
         /// it.
         std::function<void(const std::exception_ptr& failure)> deliver;
     };
+    /// Queues a job; unbounded.
     void give(Job job);
     /// Runs and delivers a job in the calling thread.
     static void doNow(Job job);

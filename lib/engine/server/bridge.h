@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The seam between a server and what else carries its run to other programs: the page, topics of
-// ROS, a broker of MQTT, the ports of real devices. A server holds its bridges and gives each its
-// turn; it knows no bridge by name.
+// The seam between a server and other protocols that carry its run: the page, topics of ROS, a
+// broker of MQTT, the ports of real devices. A server holds its bridges and gives each its turn; it
+// knows no bridge by name.
+//
+// Order of calls: open (the constructor), then stepped() and serve() in turn, then for bridges that
+// keep the last step lastStepped() and finish(), then end(), busy() for at most half a second, and
+// closeAll().
 #pragma once
 
 #include <functional>

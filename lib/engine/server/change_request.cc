@@ -72,7 +72,7 @@ bool isMeta(std::string_view keyword) {
     return schema != nullptr && schema->type == RecordType::Meta;
 }
 
-/// The edits that a request asks for.
+/// Parses the edits of a request. \throws Refusal
 std::vector<Edit> editsOf(std::span<const std::string_view> words, std::string_view rest) {
     try {
         if (words[0] == "ADD") {

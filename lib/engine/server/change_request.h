@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests that change the world. Private to lib/engine/server.
+// Requests that change the world: ADD, SET, DELETE, ACT, LOAD and RESET. Private to
+// lib/engine/server.
+//
+// A change is all or none: a request that fails leaves the world as it was. Codes of errors: 400
+// for a request that is wrong by itself, 403 for one that the run forbids, 404 for an unknown
+// record or file, 409 for records that contradict each other or exceed memory.
 #pragma once
 
 #include <functional>
@@ -23,7 +28,8 @@ struct RoomRequest {
 };
 
 /// Finds the room of a request ADD, SET, DELETE or ACT, and takes it off the ids; of a sole world,
-/// that of any request.
+/// that of any request. In a building ids are "ROOM/ID" without globs, and a request is about one
+/// storey. \pre words has a verb and the arguments that its row requires, adjacent in one string
 RoomRequest roomRequest(const Worlds& worlds, std::span<const std::string_view> words);
 
 /// Carries out a request ADD, SET, DELETE, LOAD or RESET. \returns the answer, completed once the

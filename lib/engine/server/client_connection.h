@@ -54,7 +54,9 @@ class LineBuffer {
     std::size_t end_ = std::string::npos;  // position of its LF
 };
 
-/// Unsent output of a connection: replies in order, and a scan shared with other connections.
+/// Unsent output of a connection: replies in order, and a scan shared with other connections. A
+/// scan that has begun is sent whole, before the replies that came meanwhile: lines never mix.
+/// Amortised one move for each byte.
 class Outbox {
   public:
     void append(std::string_view text);
@@ -82,14 +84,23 @@ class Outbox {
 
 /// The transport of one session. It reads requests, writes answers, and finally waits for the peer
 /// to close; pending handlers keep it alive until then.
+///
+/// Backpressure: while more than ServerLimits::pending bytes are unsent, further requests stay in
+/// the buffer of the system, and TCP slows the client. One client's turn ends after 64 requests or
+/// 0.2 ms. A closing connection reads and drops input for up to a second after its last byte, since
+/// closing with unread input would reset it and the peer might lose that byte.
+///
+/// Used by the server's thread alone.
 class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
   public:
+    /// \param socket of Acceptor: non-blocking \pre owned by a std::shared_ptr before any call
     ClientConnection(asio::ip::tcp::socket socket, const ServerLimits& limits)
         : socket_(std::move(socket)),
           timer_(socket_.get_executor()),
           limits_(limits),
           lines_(limits.line) {}
 
+    /// Greets the client and answers its requests from now on. \pre `state` outlives the session
     void serve(ServerState& state) {
         session_.emplace(state, peerOf(socket_));
         out_.append(Session::greeting());
@@ -140,8 +151,9 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     [[nodiscard]] WallTime waitingSince() const { return waiting_since_; }
     /// True while the peer leaves output unread.
     [[nodiscard]] bool owes() const { return session_ && writing_ && owed_ > 0; }
-    /// Sends pending output and closes without waiting for the peer.
+    /// Ends pending requests, sends their answers and closes without waiting for the peer.
     void end();
+    /// Closes at once; unsent output is lost.
     void close();
 
   private:
@@ -182,10 +194,10 @@ class ClientConnection : public std::enable_shared_from_this<ClientConnection> {
     bool last_ = false;        // closes without waiting for the peer
 };
 
-/// True if a call on a non-blocking socket must be repeated later.
+/// True if a call on a non-blocking socket must be repeated later: no data, no room, a signal.
 bool wouldBlock(const boost::system::error_code& error);
 
-/// Reads and drops arrived bytes, a bounded amount per call, so that unread input does not reset a
+/// Reads and drops arrived bytes, at most 64 KiB per call, so that unread input does not reset a
 /// closing connection. \returns false once the peer has closed its end or is gone
 bool discardInput(boost::asio::ip::tcp::socket& socket);
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Roles of the protocol that extensions add to a run: such a role has further requests, may read
-// sensors by its own clock, and may make the world wait for its clients.
+// sensors by its own clock, and may make the world wait for its clients. All functions are called
+// in the server's thread, and none may block. Answers are lines of ispace-protocol(7) with their
+// LF: "OK …" or, by errorText() of role_answer.h, "ERR CODE reason".
+//
+// A service lives as long as its run; a client's role lives from the request that takes it to the
+// end of the connection, so the destructor of ClientRole gives the id back.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +28,7 @@ struct RoleRequest {
     std::size_t least = 0, most = 0;  ///< number of arguments
 };
 
-/// Answer to a request: a line with its end, or a wait.
+/// Answer to a request: a line with its end, or a wait. With waits the line is ignored.
 struct RoleAnswer {
     std::string line;
     bool waits = false;  ///< asked again, with the same words, once ClientRole::waits() is false
@@ -57,7 +62,7 @@ class RoleService {
     virtual std::unique_ptr<ClientRole> take(std::string_view id, std::string& answer) = 0;
     /// Called after each step of the world, before the clients' turn.
     virtual void stepped() = 0;
-    /// Returns true while a client keeps the world from its next step.
+    /// Returns true while a client keeps the world from its next step; ignored with a real clock.
     [[nodiscard]] virtual bool holdsWorld() const = 0;
     /// Names the clients that the world will wait for; "" if it waits for no client.
     [[nodiscard]] virtual std::string waitsFor() const = 0;

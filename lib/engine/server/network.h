@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Addresses and the token of a server. Names are never resolved: an address is numeric or
+// "localhost", so that no answer of a name server decides over access. IPv4 is compared as
+// ::ffff:a.b.c.d (RFC 4291, 2.5.5.2), prefixes as in RFC 4632. Pure functions, but for those that
+// read the file of the token.
+//
+//     const Network lab = parseNetwork("192.168.1.0/24");
+//     const bool is_known = isAllowed({&lab, 1}, "192.168.1.20");  // true
 #pragma once
 
 #include <algorithm>
@@ -19,8 +26,8 @@ struct Endpoint {
     std::uint16_t port = 0;
     bool is_loopback = true;  ///< other machines cannot connect
 };
-/// Parses ADDR:PORT with a numeric address (127.0.0.1, [::1], 0.0.0.0) or localhost. \throws
-/// UsageError
+/// Parses ADDR:PORT with a numeric address (127.0.0.1, [::1], 0.0.0.0) or localhost, which is
+/// 127.0.0.1. IPv6 needs brackets. \throws UsageError with a hint
 Endpoint parseEndpoint(const std::string& text);
 
 /// A range of addresses, as in 192.168.1.0/24 or fd00::/8.
@@ -29,20 +36,24 @@ struct Network {
     int bits = 128;                          ///< leading bits that are compared
 };
 
-/// Parses a numeric address, alone or with a prefix length. \throws UsageError
+/// Parses a numeric address, alone or with a prefix length. \throws UsageError, also if bits behind
+/// the prefix are set: 192.168.1.20/24 is more likely an error than a range
 Network parseNetwork(const std::string& text);
 
-/// True if a network contains this numeric address, or if it is an address of this machine.
+/// True if a network contains this numeric address, or if it is a loopback address. Other text is
+/// not allowed.
 bool isAllowed(std::span<const Network> allowed, const std::string& address);
 
 /// Reads the token from a file: its first line, of 1 to 256 characters without blanks.
-/// \throws FormatError, std::system_error
+/// \throws FormatError, std::system_error as readAll()
 std::string readToken(const std::string& file);
 
-/// True if users other than the owner may read or replace the file.
+/// True for a regular file that group or others may read or write; its folder is not checked.
+/// \throws std::system_error
 bool isOpenToOthers(const std::string& file);
 
-/// Compares in time that depends only on the length of `given`.
+/// Compares in time that depends on the lengths alone, so that a client cannot find a token letter
+/// by letter. \pre secret is not empty
 bool isSameSecret(std::string_view given, std::string_view secret);
 
 /// Finds the connection that must make room, for all listeners: one without a role, or an idle

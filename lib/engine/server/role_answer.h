@@ -32,7 +32,8 @@ inline std::string joined(const std::vector<std::string>& words, std::string_vie
     return out;
 }
 
-/// The newest items that a client has not read; older ones are dropped, and counted.
+/// The newest kMost items that a client has not read; older ones are dropped, and counted. O(1) for
+/// each item.
 template <typename Item>
 class UnreadItems {
   public:

@@ -85,7 +85,8 @@ bool hasBytes(const Sensor& sensor) {
 
 namespace {
 
-/// Adds the fields of a kind that the protocol writes in one line, angles in degrees.
+/// Adds the fields of a kind that the protocol writes in one line, angles in degrees. Kinds of
+/// extensions need no code here: their table of fields says which of them a line holds.
 struct LineFields {
     std::string& out;
     std::span<const float> floats = {};  ///< of the last field with floats

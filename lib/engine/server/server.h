@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/engine/server: the server of the Simulator TCP Protocol, and the seam for other protocols
-// (bridge.h). Uses sim and below; Asio inside.
+// lib/engine/server: the server of the Simulator TCP Protocol (ispace-protocol(7)), and the seam
+// for other protocols (bridge.h). Uses sim and below; Asio inside.
+//
+// One thread steps the world, answers requests and calls bridges in turn, some 2 ms each, so no
+// request sees half a step. Heavy sensors and changes of the world are computed by up to two
+// further threads for each world. With a clock that is not real, and in a replay or a paused world,
+// the world waits for them: the sequence of steps and readings then does not depend on the speed of
+// the machine. With a real clock the world runs on.
+//
+// Clients are untrusted. Lines, replies, pictures under way and connections are bounded by
+// ServerLimits; a client that exceeds a limit is answered by an error line or disconnected, and the
+// others go on. Transport is not encrypted.
+//
+//     Simulation simulation(world, {}, clock, std::nullopt);
+//     Server server(simulation, parseEndpoint("127.0.0.1:0"));
+//     announce(server.address());  // "127.0.0.1:40123": the system has chosen the port
+//     server.run();                // until SHUTDOWN, stop() or the end of the simulation
 #pragma once
 
 #include <chrono>
@@ -22,13 +37,14 @@
 
 namespace ispace {
 
-/// Limit on a request's frequency: `rate` a second in the long run, `burst` at once.
+/// Limit on a request's frequency: `rate` a second in the long run, `burst` at once. Time is that
+/// of the wall (steady clock), not of the simulation.
 struct RateLimit {
     double rate = 0;
     double burst = 0;
 };
 
-/// Limits that keep one client from harming the others.
+/// Limits that keep one client from harming the others. Times are wall time.
 struct ServerLimits {
     std::size_t clients = 256;  ///< further clients are answered ERR 429 and closed
     std::size_t line = 4096;    ///< bytes of a request without its end; else ERR 413
@@ -49,14 +65,17 @@ struct ServerLimits {
     RateLimit spare_pauses = {1, 1};
     bool shutdown = true;  ///< clients may end the run
     bool changes = true;   ///< clients may change the world, if there is a `source`
+    /// Reads the files that LOAD and records of clients name; null: the world cannot be changed.
     std::shared_ptr<const SceneSource> source;
     /// Token required to change the world and to end the run; "": none required.
     std::string token;
     bool token_first = false;  ///< every role requires it
+    /// Wrong tokens of one address, and of all addresses without a right one; beyond it ERR 429.
     RateLimit wrong_tokens = {10, 10};
     /// A robot or person stops when its client has been silent this long; 0: never.
     std::chrono::nanoseconds watchdog{};
-    /// Networks that may use device ports and DDS, besides this machine.
+    /// Networks that may use device ports and DDS, besides this machine. The protocol's own port
+    /// is not filtered: there the token decides.
     std::vector<Network> allowed;
     /// Unless the clock is real, the world waits until clients have read what they subscribed to
     /// over TCP and WebSockets: for each at most as long as the watchdog, else `patience`.
@@ -64,7 +83,7 @@ struct ServerLimits {
     bool wall_clock = false;  ///< clocks of devices show wall time instead of simulated time
 };
 
-/// Data that slow readers were not sent, since newer data took its place.
+/// Data that slow readers were not sent, since newer data took its place. Counts of the whole run.
 struct ReaderLosses {
     std::int64_t readings = 0;  ///< of streams of the protocol
     std::int64_t messages = 0;  ///< of topics, over Foxglove and rosbridge
@@ -79,9 +98,12 @@ struct BridgeHost;
 /// Writes never block: a slow reader receives the newest scan once it reads, and its requests wait
 /// while it leaves replies unread. The unread bytes of all clients are bounded, and so is the time
 /// in which a connection must choose a role.
+///
+/// A reading is formatted once for all its readers. Members are not thread-safe unless they say so.
 class Server {
   public:
-    /// Starts listening. \param joined serves these worlds, which the simulation leads; may be null
+    /// Starts listening; clients are answered once run() is called. \param joined serves these
+    /// worlds, which the simulation leads; may be null. Both outlive the server.
     /// \throws std::system_error naming the endpoint
     Server(Simulation& simulation, const Endpoint& endpoint, const ServerLimits& limits = {},
            Worlds* joined = nullptr);
@@ -124,7 +146,8 @@ class Server {
     /// Finishes the simulation. Callable from any thread, and before run(), which then returns at
     /// once.
     void stop();
-    /// Calls stop() once `descriptor` is readable. It must stay open during run() and is not read.
+    /// Calls stop() once `descriptor` is readable, as that of StopSignals. It is duplicated and not
+    /// read. Call once, before run(). \throws std::system_error without a free descriptor
     void stopOn(int descriptor);
 
   private:

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The turns of a server's clients and of its world.
+// The turns of a server's clients and of its world. Each gets 2 ms at most before the other, so
+// that neither a busy client nor a slow world starves the other. Full servers make room by ending
+// the connection that has been without a role longest; too much unread output is relieved by
+// closing the slowest readers, never one within an equal share.
 #include "server/server_data.h"
 
 #include <poll.h>

@@ -25,6 +25,7 @@
 
 namespace ispace {
 
+/// All members belong to the server's thread; `serving` may be read by any.
 struct Server::Data {
     Data(Simulation& the_simulation, const Endpoint& endpoint, const ServerLimits& the_limits,
          Worlds* joined)

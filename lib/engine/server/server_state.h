@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // State shared by the sessions of a server. For lib/engine/server and its bridges.
+//
+// Background work. A heavy reading (ask(), takeFrame()) is computed from a copy of the world's
+// state at that time, in the picture thread; a change of the world, or the next part of a replay,
+// is prepared in the change thread and adopted between two steps. Both end in collect(), in the
+// server's thread. Without startBackground() all of it happens at once, which tests use.
 #pragma once
 
 #include <cstddef>
@@ -52,7 +57,7 @@ std::string nameAcross(const std::string& room, const std::string& id);
 /// whose names have none
 std::string prefixOf(const std::string& room);
 
-/// Enforces a RateLimit: a counter that refills with time.
+/// Enforces a RateLimit: a counter that refills with time, up to `burst`.
 class TokenBucket {
   public:
     /// Starts full. \pre rate > 0, burst >= 1
@@ -72,7 +77,8 @@ class TokenBucket {
 
 /// Wrong tokens, counted for each address of clients and in sum over addresses that have never
 /// shown the right one. Beyond a limit further wrong ones are answered 429; the right one always
-/// passes. Memory is bounded: among very many addresses the oldest is forgotten.
+/// passes. Memory is bounded: of more than 1024 addresses the one used longest ago is forgotten,
+/// those that had the right token last.
 class WrongTokens {
   public:
     explicit WrongTokens(const RateLimit& limits) : limits_(limits), strangers_(limits) {}
@@ -95,7 +101,8 @@ class WrongTokens {
     std::int64_t uses_ = 0;
 };
 
-/// Steps of a paused world requested by clients, taken in order of request.
+/// Steps of a paused world requested by clients, taken in order of request: each step counts for
+/// the first ticket that still wants one.
 class StepQueue {
   public:
     /// Progress of one STEP.
@@ -148,7 +155,8 @@ class TopicEchoes {
     std::int64_t topics_ = 0, messages_ = 0;
 };
 
-/// Limits clients' changes of the world to half of the time.
+/// Limits clients' changes of the world to half of the time: after one that took d, the next may
+/// begin d after its end.
 class ChangeBudget {
   public:
     [[nodiscard]] bool mayBegin(WallTime now) const { return now >= next_; }
@@ -179,6 +187,10 @@ struct ServedRooms {
 
 /// State shared by all sessions of a world: holds on robots, and the text of the newest scans,
 /// formatted once for all readers.
+///
+/// A hold has a number that is never given again, so a session cannot release or drive a mover that
+/// has been removed, added under the same id and taken by another client. Not thread-safe: one
+/// thread calls all members.
 class ServerState {
   public:
     explicit ServerState(Simulation& simulation, const ServerLimits& limits = {});
@@ -268,7 +280,8 @@ class ServerState {
         bool is_error = false;                     ///< `bytes` is an ERR line
     };
     /// Asynchronous scan(): after startBackground(), a heavy sensor is computed in a background
-    /// thread from the current world. Rejected if too many requests are pending.
+    /// thread from the current world; equal requests of one period share one reply. Rejected by
+    /// code 409 if the pixels that are pending exceed kMaxWaitingPixels (sim/run_limits.h).
     std::shared_ptr<const PendingReply> ask(std::size_t sensor, const ReplyForm& form);
     /// Computes a frame for a record in the same way; requests by ask() for that frame share it.
     void takeFrame(FrameJob job);

@@ -36,7 +36,8 @@ std::string_view reasonOf(Outcome outcome) {
 
 }  // namespace
 
-/// A request of the protocol. A verb may have several rows with different roles.
+/// A request of the protocol. A verb may have several rows with different roles; the row of the
+/// present role is found first, its token and number of arguments are checked, then it answers.
 struct Session::Request {
     std::string_view verb;
     std::string_view arguments;  // for humans

@@ -30,7 +30,8 @@ inline std::string_view textOf(std::span<const std::string_view> words) {
             static_cast<std::size_t>(last.data() + last.size() - words.front().data())};
 }
 
-/// An integer from 1 to 10^9, or the error in its text.
+/// An integer from 1 to 10^9, or the error in its text: 400 if it is no whole number, 416 if it is
+/// out of range.
 struct Count {
     std::int64_t value = 0;
     int code = 0;  ///< code of the error; 0: no error
@@ -39,7 +40,7 @@ struct Count {
 /// \param what subject of an error message: "every", "the number of steps"
 Count parseCount(std::string_view text, std::string_view what);
 
-/// Formats a measured value with three decimals.
+/// Formats a measured value with three decimals, as formatFixed rounds.
 std::string measured(double value);
 /// Formats a heading in (-180, 180], which also holds after rounding.
 std::string headingText(Angle heading);
@@ -47,7 +48,8 @@ std::string headingText(Angle heading);
 /// "ERR 404 no robot `r9`\n"
 std::string errorLine(int code, std::initializer_list<std::string_view> text);
 
-/// Error line of a request that ran out of memory or has no representation in the format.
+/// Error line, code 409, of a request that ran out of memory or has no representation in the
+/// format. \param failure a std::exception
 std::string errorLineOf(const std::exception_ptr& failure);
 
 /// Returns "no robot `r9`" with the most similar id, or the list of ids.
@@ -58,6 +60,16 @@ struct RoomRequest;
 
 /// The server's side of one client's dialogue in the Simulator TCP Protocol, version 1, without
 /// transport: it reads lines and writes bytes. ispace-protocol(7) describes the language.
+///
+/// Each request gets one line in answer, "OK …" or "ERR CODE reason", in the order of requests;
+/// events and readings that are older than the answer come before it. A request that cannot be
+/// answered now is kept, and those after it stay unread. Motion commands send a further line when
+/// they end. Bad requests never throw; std::bad_alloc of one becomes ERR 409.
+///
+///     Session session(state);
+///     session.request("ROBOT r1");
+///     session.request("FORWARD 1.5");
+///     send(session.take());
 class Session {
   public:
     /// \param peer address of the client, without its port; "" if unknown

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Formats readings for the protocol, see ispace-protocol(7). For lib/engine/server and its bridges.
+//
+//     SCAN l1 t=0.250 seq=1 r=1.234,-,2.000
+//
+// Lines hold metres, degrees and seconds with three decimals; the bytes after a binary line hold
+// floats as the sensor has them. The text depends on the reading and the form alone, so all readers
+// of a reading share it. Pure functions.
 #pragma once
 
 #include <span>
@@ -29,7 +35,8 @@ struct ReplyForm {
     friend bool operator==(const ReplyForm&, const ReplyForm&) = default;
 };
 
-/// Encodings that a sensor supports, the default first; empty if there is no choice.
+/// Encodings that a sensor supports, the default first; empty if there is no choice: only cameras
+/// and depth cameras have one.
 std::span<const FrameFormat> formatsOf(const Sensor& sensor);
 std::string_view nameOf(FrameFormat format);
 /// True if the sensor's readings can be sent as bytes after a line.
