@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parses a command line, explains its errors, and lists its options for --help, for the history of
 // the product and for reruns.
+//
+// CLI11 parses options that it knows and leaves the rest: unknown options and surplus operands are
+// sorted out and explained here. Before it, words are rewritten that it cannot parse: -MD and -MF
+// FILE, an option whose number may be left out, and a word behind --help.
 #include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Declares, parses and prints the options and operands of a tool.
+//
+//     CommandLine line("scan", "ENV [LAYOUT]", "Writes what the sensors of a layout measure.");
+//     double height = 0.3;
+//     line.meters("--height", height, 0, 10, "height of the plane", Enters::History);
+//     std::vector<std::string> operands;
+//     line.operands(operands, 2);
+//     line.parse(argc, argv);  // opens no file
+//
+// Errors are UsageError with the option's name, the bad value, the wanted ones and a hint: the
+// option with the most similar name, or advice for options that other programs have (guesses.h).
+// An option with a value that is given twice is an error unless it is repeatable. CLI11 parses; no
+// type of it leaves command_line.cc.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +31,8 @@
 namespace ispace {
 
 /// Form in which an option enters the history line of the product: only options that change its
-/// bytes do, a file by its base name, and so the files of a list, `word:FILE,FILE`.
+/// bytes do, a file by its base name, and so the files of a list, `word:FILE,FILE`. Products made
+/// in different folders, or by different numbers of threads, then have equal bytes.
 enum class Enters { History, BaseName, BaseNames, Nothing };
 
 /// A rule for make that lists the sources of the product.
@@ -32,7 +45,8 @@ struct DependencyOptions {
 /// to its variable; `--help` and the history line come from that table.
 ///
 /// Numbers are parsed whole, without locale, and checked at once. Options may stand before, between
-/// and after operands; `--` ends them.
+/// and after operands; `--` ends them. Variables keep their values, the defaults, without the
+/// option; they outlive the object. Not thread-safe.
 class CommandLine {
   public:
     /// `synopsis` follows the tool's name, `summary` holds one or two lines for `--help`.
@@ -75,7 +89,7 @@ class CommandLine {
                 std::function<void(const std::string&)> take, const std::string& help,
                 Enters enters);
     /// Repeatable options that keep their relative order: `take` and the history line receive them
-    /// in the order of the command line.
+    /// in the order of the command line. `take` is called once all other options are set.
     void ordered(const std::string& names, const std::string& value,
                  std::function<void(const std::string&)> take, const std::string& help);
     /// -MD and -MF FILE, as compilers have them, for the product `output`.
@@ -112,7 +126,10 @@ class CommandLine {
     /// Allows any number of operands with this flag.
     void manyOperandsWith(const bool& flag);
 
-    /// \throws UsageError with a hint, TextRequested for -h and -V
+    /// Sets the variables and operands. Options are set in their order of declaration, those of
+    /// ordered() last. `--errors json` selects the form of messages first, so that errors of the
+    /// command line have it, too. Call once. \throws UsageError with a hint, TextRequested for -h
+    /// and -V
     void parse(int argc, const char* const* argv);
 
     /// Returns true if the option ("--output") stood in the command line; false if it is not
@@ -123,7 +140,8 @@ class CommandLine {
     /// Returns a name of each declared option, in their order: the first long one ("--output"),
     /// else the short one.
     [[nodiscard]] std::vector<std::string> names() const;
-    /// Returns "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given.
+    /// Returns "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given, in the
+    /// order of declaration, quoted for the shell.
     [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const;
     /// Returns the words of a command line with the same result: the tool, the options that enter
     /// its history as they were given, and the operands.

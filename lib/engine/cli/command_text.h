@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Text about a command: its help, its version, and its words in the history of a product.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Options that several tools share, declared once: -o and its kin, cells, zones, formats, limits.
+//
+//     CommonOptions common;
+//     addCommonOptions(line, common, "file of the layout (default: stdout)");
+//     line.parse(argc, argv);
+//     limitThreads(common.threads);
+//     warn(common, "arrange", input.warnings);
 #pragma once
 
 #include <cstdint>
@@ -63,7 +70,7 @@ auto ofOption(const std::string& name, const Read& read) {
 
 /// Limits the number of worker threads of the process to `threads` from now on (0: the least of the
 /// cores of the affinity mask, cpuQuota() and SLURM_CPUS_PER_TASK), and to the number that the
-/// system grants. 1 starts no thread.
+/// system grants. 1 starts no thread. Results do not depend on it.
 void limitThreads(int threads);
 
 /// Returns the folder of devices and scenes: `../share/ispace` beside the folder of the running

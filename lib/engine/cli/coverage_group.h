@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the reports of coverage: options, and what they find out
 // about a measured site. See cli/extension.h.
+//
+// Order of calls: declare(), takesRequirement() for each --require, take(), and if isAsked():
+// fit() before the site is measured, measure() after it. Groups that search are measured last, once
+// the product is written.
 #pragma once
 
 #include <memory>

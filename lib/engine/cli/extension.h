@@ -8,7 +8,8 @@
 //     }
 //
 // tools/extensions.cc lists these functions. No other file of the core or of the tools names an
-// extension.
+// extension. A build without an extension still knows the names that it would offer
+// (offers.txt in each folder): a user that asks for one is told which extension has it.
 #pragma once
 
 #include <memory>
@@ -38,7 +39,8 @@ struct ToolOptions {
 struct Extension {
     std::string_view name;  ///< of its folder
     /// Adds its rows to the tables of the library: importers, records, kinds of sensors, verbs of
-    /// people. It is called once, before the first input is read.
+    /// people. It is called once, before the first input is read, by one thread: later the tables
+    /// are read without locks.
     void (*add)() = nullptr;
     std::vector<ToolOptions> options = {};                     ///< at most one for each tool
     std::unique_ptr<ObjectiveGroup> (*objective)() = nullptr;  ///< of `arrange --objective`

@@ -113,7 +113,7 @@ int statusOf(pid_t child) {
     return WIFSIGNALED(status) ? kSignalled + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
-/// In the child: stands in for a process of its own. \param is_alone false: other threads were
+/// In the child: stands in for a separate process. \param is_alone false: other threads were
 /// lost by the fork, so the program begins anew
 int work(std::string tool, Job job, const std::function<void(int, char**)>& body, bool is_alone) {
     std::vector<char*> argv = argumentsOf(tool, job.words);

@@ -17,6 +17,9 @@ namespace ispace {
 /// stdout, once the job has ended, is its status and a newline: the exit status, or 128 plus the
 /// number of the signal that ended it. Ends with stdin; jobs end with it.
 ///
+/// A job is a copy (fork) as long as the server has one thread, else the program begun anew. It is
+/// killed if the server ends. A server runs one job at a time; ispace-sweep starts several servers.
+///
 /// \param body reads the command line and does the work; it throws as bodies of runTool() do
 int runTool(const std::string& tool, int argc, char** argv,
             const std::function<void(int, char**)>& body);

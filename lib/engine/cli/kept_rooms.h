@@ -21,14 +21,15 @@ struct KeptRoom {
     Scene scene;  ///< without a layout
 };
 
-/// Number of rooms that are kept: the last ones.
+/// Number of rooms that are kept: those used last.
 constexpr std::size_t kMostKeptRooms = 16;
 
 /// Reads the rooms among operands of a command, so that keptRoom() of this process and those that
-/// it forks returns them until one of their files changes. Skips layouts, which differ from job to
-/// job, options, and files that are no room, hold a building, look for files in vain, or cannot be
-/// read: the job that reads those reports it. Thread-safe; threads that want the same room wait for
-/// one that reads it. \param operands will have the same names and current folder
+/// it forks returns them until one of their files changes (device, inode, size or time). Skips
+/// layouts, which differ from job to job, options, and files that are no room, hold a building,
+/// look for files in vain, or cannot be read: the job that reads those reports it. Thread-safe;
+/// threads that want the same room wait for one that reads it. \param operands will have the same
+/// names and current folder
 void keepRooms(std::span<const std::string> operands);
 
 /// Returns the kept room, or null. Thread-safe. Costs a stat() of each of its files. Like a reader,

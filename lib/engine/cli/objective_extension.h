@@ -19,7 +19,8 @@ class Demand;
 struct ArrangeOptions;
 struct RoomGoals;
 
-/// An objective of arrange and its options; help() says what the layout maximises.
+/// An objective of arrange and its options; help() says what the layout maximises. Without one,
+/// arrange covers floor.
 class ObjectiveGroup : public WordGroup {
   public:
     /// Returns what counts, for refusals of options about the floor, and those of them that hold

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of an extension in a tool, and a task that they ask for instead of the tool's own.
+// Options of an extension in a tool, and a task that they ask for instead of the tool's own. A tool
+// declares the groups after its own options, parses, and runs task() if there is one; options that
+// the task would ignore are errors.
 #pragma once
 
 #include <functional>

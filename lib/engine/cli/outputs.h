@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Products of a tool: large ones, sets of files, and rules for make. A tool claims all of them
+// before its work, so that a product that would overwrite an input, or another product, is an error
+// before an hour of computing, not after it.
 #pragma once
 
 #include <optional>
@@ -12,7 +15,8 @@
 
 namespace ispace {
 
-/// A stream into an OutputFile, for products that are too large for memory.
+/// A stream into an OutputFile, for products that are too large for memory; buffers 1 MiB. Failed
+/// writes throw from the operation that flushes them. Without commit() the target stays as it was.
 class FileStream : private std::streambuf {
   public:
     /// \throws std::system_error if the file cannot be created there
@@ -36,7 +40,8 @@ class FileStream : private std::streambuf {
 /// streams. Each source is also a target without recipe, so that make continues if a file that is
 /// no longer used was deleted. Special characters are escaped for make. \throws UsageError for
 /// names that make cannot read: with = ; control characters, two %, ~ at the beginning, or a blank,
-/// backslash or ) at the end
+/// backslash or ) at the end. Quoting follows GNU make, which differs for targets and
+/// prerequisites.
 std::string dependencyRule(const std::string& target, std::span<const std::string> sources);
 
 /// Validates -MD and -MF against -o. \throws UsageError for -MF alone and without a product's name

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Progress of long work on stderr, and searches that end early.
 #pragma once
 
 #include <atomic>
@@ -14,7 +15,9 @@
 namespace ispace {
 
 /// A line on stderr that shows phase, share, rate, time left and the last note, drawn at most ten
-/// times a second and left at its last state at the end of a phase.
+/// times a second and left at its last state at the end of a phase. advance() and note() may be
+/// called by any thread, the others by one; between drawings advance() costs a clock and an atomic
+/// addition. The time left assumes a constant rate since the start of the phase.
 class ProgressBar final : public Progress {
   public:
     /// \param quick seconds; shorter phases are not drawn
@@ -47,6 +50,11 @@ std::unique_ptr<Progress> makeProgress(const std::string& tool, std::optional<bo
                                        bool quiet, double quick = 0);
 
 /// Progress of a search that ends early at TERM, INT or a time limit, with the best result so far.
+///
+///     SearchWatch watch(makeProgress("arrange", common.progress, common.quiet), limit);
+///     const Layout best = search(room, watch);
+///     write(best);
+///     if (watch.signal() != 0) endBySignal(watch.signal());  // as if it had not been caught
 class SearchWatch final : public Progress {
   public:
     /// \param shown receives the progress; \param limit seconds from now on

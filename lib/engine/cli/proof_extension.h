@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the proofs of arrange: a word of --proof, options, and
-// the prover. See cli/extension.h.
+// the prover, which bounds the best layout from above (arrange/prover.h). See cli/extension.h.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions makes of the record of a run at its end: options of simrun, and
-// the work that they ask for. See cli/extension.h.
+// the work that they ask for. The run has ended and its clients are gone, so the work may take
+// long. See cli/extension.h.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Options of a report that is handed over: its cover, paper, prices and material.
+// checkReportOptions() is called after parsing, and reads the logo and the prices, so that errors
+// in them are found before any work.
 #pragma once
 
 #include <memory>
@@ -22,7 +24,7 @@ struct ReportWords {
 void addReportOptions(CommandLine& line, ReportWords& words);
 
 /// Rejects options without the file that they are about. \param report name of the report's file;
-/// "" without one \throws UsageError
+/// "" without one \throws UsageError; FormatError, std::system_error for a bad logo or prices
 void checkReportOptions(const ReportWords& words, const std::string& report);
 
 /// Reads logo and prices. \throws FormatError for a logo that is no PNG picture, or a bad price

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the ways into a run: options of simrun, and the bridges
 // that they ask for (server/bridge.h). See cli/extension.h.
+//
+// Order of calls: declare(), take(), claim(), open(), begin(), announce(), the run, commit(). All
+// ports listen before the first line of output names them.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the judgement of runs: options of simrun that say what a
-// run must do, and the judge that watches it. See cli/extension.h.
+// run must do, and the judge that watches it. See cli/extension.h. An unmet requirement is exit
+// status 3, once the run has ended and its files are written.
 #pragma once
 
 #include <memory>

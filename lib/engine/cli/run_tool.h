@@ -24,6 +24,14 @@ struct TextRequested {
 /// Runs a tool's body, prints its exceptions to stderr, one line per error, and returns the exit
 /// status: 0 done; 1 bad data or failed I/O; 2 usage; 3 a stated requirement not met. A closed pipe
 /// ends the process silently.
+///
+///     int main(int argc, char** argv) {
+///         return ispace::runTool("scan", [&] { ispace::scan(ispace::parseScan(argc, argv)); });
+///     }
+///
+/// Changes the process: opens closed standard streams on /dev/null so that no file gets their
+/// number, restores SIGPIPE and SIGCHLD, turns `ulimit -f` into an error of the write, and lets GMP
+/// throw std::bad_alloc. Outputs of the body are guarded against its inputs (FileGuard).
 int runTool(const std::string& tool, const std::function<void()>& body);
 
 /// Form of messages on stderr: lines for people, or a line of JSON each (schema ispace-message/1).
@@ -58,8 +66,9 @@ struct ToolFailure {
 /// Converts the exception being handled, for callers that go on after it. \pre within a handler
 ToolFailure currentFailure();
 
-/// Writes the pieces and a newline to stderr, in any form of messages. Requires no memory, and
-/// waits if stderr is non-blocking. May be called at any time, also before main().
+/// Writes the pieces and a newline to stderr, in any form of messages; cuts them at 4095 bytes.
+/// Requires no memory, and waits if stderr is non-blocking. May be called at any time, also before
+/// main().
 void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept;
 
 /// Reports, once, that memory ran out; allocates no memory.
@@ -67,7 +76,8 @@ void sayMemoryIsOut(std::string_view tool) noexcept;
 
 /// Turns TERM and INT into requests to stop. While it lives only a second INT ends the process;
 /// afterwards both are ignored, since only exiting is left. No thread is involved: workers poll
-/// signal(). One at a time in a process.
+/// signal(). One at a time in a process. Signals that were ignored, as in background jobs of
+/// shells, are heeded as well.
 class StopSignals {
   public:
     /// \throws std::system_error

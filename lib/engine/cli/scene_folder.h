@@ -15,7 +15,8 @@ namespace ispace {
 /// absolute), and must lead, links followed, to a regular file in it or below; no part of the path
 /// is hidden (`.name`). The same holds for files that such a file names: includes, pictures, meshes
 /// and others. Errors name files relative to the folder, and quote only files that begin as records
-/// do (`#env 1`, `#3dm 1`).
+/// do (`#env 1`, `#3dm 1`): a client learns neither the content of other files nor which files
+/// exist elsewhere.
 class SceneFolder : public SceneSource {
   public:
     /// "" is the current folder. \throws std::system_error if there is none
@@ -29,7 +30,8 @@ class SceneFolder : public SceneSource {
     [[nodiscard]] Scene load(const std::string& environment,
                              const std::string& layout) const override;
     void loadFilesOf(Record& record) const override;
-    /// Converts a client's name to a path. \throws FormatError
+    /// Converts a client's name to a path, links followed. \throws FormatError, with the same text
+    /// for a missing file as for one outside of the folder
     [[nodiscard]] std::string path(const std::string& name) const;
 
   private:

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operands that are rooms: one, or those of a building.
+// Operands that are rooms: one, or those of a building. Tools treat both alike: a room alone is a
+// site of one room with the id "", and ids across a site are "STOREY/ID".
+//
+//     const SiteInput input = readSite({.operands = operands, .rules = rules});
+//     for (const std::shared_ptr<const Scene>& room : input.rooms()) measure(*room);
 #pragma once
 
 #include <cstddef>

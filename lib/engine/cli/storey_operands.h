@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Buildings among the operands of a tool: one storey as a room, or all of them.
+// Buildings among the operands of a tool: one storey as a room, or all of them. Also records of
+// their runs, and products of which each storey has a file (%s in the name is its id).
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to an option of a tool that takes a word, as --objective:
-// the word, and options that go with it. See cli/extension.h.
+// the word, and options that go with it. An option without its word is an error, and so is the word
+// of an extension that the build lacks, which the error names. See cli/extension.h.
 #pragma once
 
 #include <memory>
