@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Calibrations of cameras from files of ROS and OpenCV. Untrusted: at most 1 MiB, 1000 keys a map
+// and 14 coefficients. Angles, skew and more coefficients than a lens of ours has are errors, never
+// ignored, since a picture with a wrong lens looks right.
 #pragma once
 
 #include <string>
@@ -15,7 +18,8 @@ namespace ispace {
 /// names no distortion model, the record's `distortion` applies, by default plumb_bob. \param name
 /// the file, for messages
 /// \throws FormatError with its line: malformed YAML, no matrix, a model that cameras do not have,
-/// skewed axes
+/// skewed axes; XML of OpenCV; coefficients that are not 0 beyond 5 (pinhole), 4 (fisheye) or 0
+/// (omni)
 void applyCalibration(Record& camera, std::string_view yaml, const std::string& name);
 
 /// Replaces the key `calibration` of each `camera` record by the values that its file holds, and

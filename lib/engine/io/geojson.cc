@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes GeoJSON (RFC 7946). Rooms have no position on Earth, which the standard requires; the
+// member "coordinate_system" says so, and `crs` of the draft of 2008 keeps GDAL and QGIS from
+// taking metres for degrees.
 #include "io/geojson.h"
 
 #include <algorithm>

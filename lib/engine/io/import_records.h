@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What importers share: records of the imported room, units, surveyors' coordinates, texts of
+// messages, and scans recorded by `scan` and `simrun`.
+//
+//     ImportRecords out(schemas, "plan.dxf", options);
+//     out.fence(path);        // closed: walls around a room
+//     out.inside({2.5, 1});   // a point on its floor
+//     return out.take();
 #pragma once
 
 #include <array>
@@ -161,7 +168,8 @@ struct RecordedScan {
     std::vector<float> ranges;  ///< metres; +infinity is no return
 };
 
-/// Reads laser scans from lines that `scan` and `simrun` write (ispace-scan/1), in constant memory.
+/// Reads laser scans from lines that `scan` and `simrun` write (ispace-scan/1), in constant memory:
+/// a line has at most 64 MiB.
 /// Skips readings of other sensors and an incomplete last line, as a killed run leaves it.
 class RecordedScans {
   public:

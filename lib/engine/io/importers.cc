@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Recognises formats by content, in an order that makes tests cheap and mistakes rare: records,
+// formats of extensions, formats with magic bytes, foreign formats that are refused by name, then
+// text. A suffix decides only where content cannot: some meshes have no magic.
 #include "io/importers.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes Wavefront OBJ and binary STL. OBJ counts vertices and normals over the whole file; normals
+// are shared within 1e-5, and materials are colours alone (MTL). STL has no units and no names:
+// metres, one surface.
 #include "io/exporters.h"
 
 #include <array>

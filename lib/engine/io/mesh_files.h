@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files of `mesh` records: read once each, by the readers that extensions add, and compared with
-// their digests.
+// their digests. Readers may run parsers of foreign formats confined (base/confined.h): a crash or
+// a loop in one is a FormatError of its file.
+//
+//     MeshFiles files;
+//     const auto& chair = files.load("chair.obj", {.up = "z"});
+//     use(*chair.mesh);  // shared by all records that name the file with these options
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The answer of a confined program: counts and arrays in the layout of this machine, since both
+// ends are one build. The parent trusts no byte of it: counts are bounded by the bytes that follow,
+// indices and coordinates are checked.
 #include "io/packed_mesh.h"
 
 #include <unistd.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The answer of confined programs that read mesh files, and the limits of such files.
+// The answer of confined programs that read mesh files, and the limits of such files. Packed bytes
+// are for the two ends of a pipe on one machine, never for a file.
 #pragma once
 
 #include <cstddef>

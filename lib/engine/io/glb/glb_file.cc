@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Container and JSON of glTF 2.0 (Khronos, glTF 2.0 Specification, section 4: GLB). The JSON is
+// written in sections that grow side by side, since a node names meshes and a mesh accessors whose
+// numbers are known at once, but whose place in the file is not. Chunks are padded to four bytes,
+// JSON by blanks, data by zeros.
 #include "io/glb/glb_file.h"
 
 #include <algorithm>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The container of GLB files, and the builder that glb_write.cc writes them with.
+// The container of GLB files, and the builder that glb_write.cc writes them with. glTF 2.0 (Khronos
+// Group, 2021; ISO/IEC 12113): metres, +Y up, faces counter-clockwise, quaternions x y z w,
+// little-endian 32-bit floats.
+//
+// glbChunks() is for untrusted bytes: each length is checked before it is used. The builder keeps
+// JSON in sections of 1 MiB and vertices in blocks, so a large model is held once, not twice.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the compiled form: binary glTF with records.
+// Reads the compiled form: binary glTF with records. Bytes are untrusted: JSON is read as a stream,
+// without a tree and without recursion, meshes may take no more bytes than the file has, and each
+// mesh must have the digest by which a record names it. Geometry that is only drawn is not parsed,
+// so that a compiled room opens in the time of its records.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes a scene as glTF. Meshes of elements are built in parallel, in blocks, and added in the
+// order of records, so equal scenes give equal bytes for any number of threads. Equal furniture
+// shares one mesh, and a mesh file is stored once. Positions are floats: plans far from the origin
+// are stored relative to their centre, whole metres that a node adds.
 #include "io/glb/glb_write.h"
 
 #include <algorithm>

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/io/glb: a scene as named meshes, and as glTF. Uses scene and below.
+//
+// The compiled form is both a model that viewers show and a room that readGlb() reads back exactly:
+// triangles are floats relative to an origin near the room, records are text with their doubles.
+//
+//     OutputFile file("room.glb");
+//     writeGlb(scene, document, [&](std::string_view bytes) { file.write(bytes); });
+//     file.commit();
 #pragma once
 
 #include <array>

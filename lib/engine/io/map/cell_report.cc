@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Messages of a map's import: floor that is not kept, openings in the border of the picture, noise,
+// closed gaps; and pictures without map.yaml.
 #include <algorithm>
 #include <array>
 #include <cmath>

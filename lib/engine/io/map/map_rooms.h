@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rooms of a map of cells: the likeliest one, closed ones, gaps in their walls, floor that a disc
+// reaches, and noise of a scanner. Distances are between middles of cells; floor joins by sides,
+// obstacles by sides or corners, so that no diagonal step crosses a wall. All results depend on the
+// cells alone.
 #pragma once
 
 #include <cstddef>

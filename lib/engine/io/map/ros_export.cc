@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A room as a map of cells. Floor is painted by the middles of cells, then every line is checked:
+// where it passes between two free middles, the nearer cell is occupied. So walls thinner than a
+// cell stay closed for planners that move between side neighbours, and walls thicker than a cell do
+// not grow.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads map.yaml and its picture as ROS' map_server does (nav2_map_server, map_io.cpp): darkness
+// above `occupied_thresh` is occupied, below `free_thresh` free. Findings of the YAML are
+// collected, so that one run reports all of them.
 #include "io/importers.h"
 
 #include <yaml-cpp/yaml.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The text of map.yaml, as ROS 1 (map_server) and ROS 2 (nav2_map_server) read it.
 #pragma once
 
 #include <string>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Strips of floor as a graph: broad pieces of floor (morphological opening) and the strips between
+// them are nodes. A breadth-first tree from a room that stays is pruned of branches without rooms:
+// strips between two rooms are doors and stay, strips with a dead end are rays of a scanner through
+// a gap. O(cells).
 #include "io/map/map_rooms.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts of meshes as walls. Solids that touch are united in groups, so that a wall running into
+// another leaves no line across it; solids apart from each other stay apart, since a union would
+// swallow furniture in a room that is modelled by its inner surface.
 #include "io/plan/cut_paths.h"
 
 #include <algorithm>

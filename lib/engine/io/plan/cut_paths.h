@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cuts through meshes of buildings as plans of lines.
 #pragma once
 
 #include <vector>
@@ -12,10 +13,10 @@ namespace ispace {
 /// Cuts of meshes are straight within this, in metres: floats of a file vary by less.
 constexpr double kMeshStraight = 0.001;
 
-/// Returns the cut through meshes as lines of a plan, straight within
-/// kMeshStraight. Solids that meet at
-/// edges, such as walls that run into each other, are united; a solid inside another remains, e.g.
-/// furniture in a room modelled by its inner surface.
+/// Returns the cut through meshes as lines of a plan, straight within kMeshStraight: closed paths
+/// of solids, then open ones of sheets. Solids that meet at edges, such as walls that run into each
+/// other, are united; a solid inside another remains, e.g. furniture in a room modelled by its
+/// inner surface.
 /// \param work pays for outlines that cross each other often
 /// \throws FormatError (without file and line) if the work is used up
 std::vector<PlanPath> cutPaths(Slice slice, Budget& work);

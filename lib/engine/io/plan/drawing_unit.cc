@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Compares the units of a drawing by three measures: doors (weight 2), walls of two lines and a
+// usual extent (1 each). The weights say that a leaf of 0.6 m to 1.2 m with its swing hardly
+// appears by chance in a wrong unit, whereas parallel lines do. A unit decides by itself only with
+// a lead of 0.6; otherwise the user is asked, with the ranking.
 #include "io/plan/drawing_unit.h"
 
 #include <algorithm>

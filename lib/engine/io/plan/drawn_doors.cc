@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Finds doors among walls: runs of a path that bend one way are candidates for swings, straight
+// lines from their hinge candidates for leaves. Drawings show swings as arcs, polylines, splines or
+// quarter ellipses, so the test is loose in shape (12 % of the leaf) and strict in size.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

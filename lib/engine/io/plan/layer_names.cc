@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Words by which drawings name layers, blocks and groups. Sources: United States National CAD
+// Standard (AIA CAD Layer Guidelines), ISO 13567-2 with the tables of CI/SfB, BS 1192, and layers
+// of public drawings in two dozen languages. Words match whole, by their beginnings, or by their
+// endings where a language joins words; parts within a word count only in scripts without blanks.
 #include "io/plan/layer_names.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Imports a plan of lines: pays for crowded lines, takes drawn doors out, joins ends, finds
+// openings, simplifies, chooses rooms and writes their walls as fences. Openings are found anew
+// after each step that moves lines, so they always lie on the walls that are written.
 #include "io/plan/line_plan.h"
 
 #include <algorithm>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/io/plan: plans drawn as lines on layers, from DXF, SVG and cut meshes.
+//
+// A reader of a format turns its entities into PlanShapes in metres; the rest is common: layers are
+// sorted by name, doors and windows found from their symbols, lines joined, rooms chosen, and walls
+// of the kept rooms written as fences. Coordinates are whole micrometres, so that records are short
+// and equal ends are equal bytes. Work is bounded by a Budget: hatching and terrain read as walls
+// are refused by FormatError, with the option that leaves layers out.
 #pragma once
 
 #include <array>

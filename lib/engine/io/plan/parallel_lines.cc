@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lines are sorted into 600 directions of half a turn, 0.3 degrees each; the sides of a wall differ
+// by at most 0.01 (sine of the angle), so they lie in the same direction or the two on each side of
+// it. In the frame of a direction boxes of lines are thin, and a search for neighbours finds few.
 #include "io/plan/parallel_lines.h"
 
 #include <algorithm>

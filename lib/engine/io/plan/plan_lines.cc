@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Normalises hand-drawn lines. Points are welded in their order, each to the nearest earlier
+// representative, so the result depends on the order of the file alone, and no chain of near points
+// collapses: representatives are at least the reach apart. All coordinates are whole micrometres
+// afterwards.
 #include "io/plan/plan_lines.h"
 
 #include <algorithm>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of a drawing as paths: welding, joining, simplifying. All functions keep the order of paths
+// and their lines in the file, by which messages name them; results depend on input order alone.
+//
+//     std::vector<PlanPath> walls = normalisedLines(std::move(drawn), kDefaultSnap, work);
+//     walls = simplifiedPaths(joinedAtEnds(std::move(walls)), 0.01, work);
 #pragma once
 
 #include <cstddef>

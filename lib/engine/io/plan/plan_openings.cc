@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Finds the openings of a drawing. A symbol of a door or window is a set of chords; each is a
+// candidate if its ends meet walls, see candidate(). Swings come before lines, since a line from
+// hinge to the end of a swing is its leaf, not an opening. Then two opposite sides of a symbol open
+// the walls between them, and last, jambs mark doorways that have no symbol at all.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

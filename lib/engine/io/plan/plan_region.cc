@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The faces of a plan's lines, from the arrangement of geom/arrangement.h: which are rooms, which
+// the space between the two lines of a wall, and which of them doors join.
 #include "io/plan/plan_rooms.h"
 
 #include <algorithm>

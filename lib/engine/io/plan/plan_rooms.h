@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The rooms that the lines of a plan enclose: faces of their arrangement, joined where doors are.
+//
+//     const PlanRooms rooms = chooseRooms({.lines = walls, .doors = doors}, options, work, out);
+//     writeRooms(rooms, options, out);
+//
+// Areas and faces are those of geom/arrangement.h: exact up to rounding to doubles, after welding
+// within kWeldDistance.
 #pragma once
 
 #include <cstddef>

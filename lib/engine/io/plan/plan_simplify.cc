@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Simplifies lines by the method of D. H. Douglas and T. K. Peucker, Algorithms for the reduction
+// of the number of points required to represent a digitized line, 1973, with a test more: a run is
+// replaced only if no other line lies in the area between it and its chord, which keeps the
+// topology of the plan (M. de Berg, M. van Kreveld, S. Schirra, Topologically correct subdivision
+// simplification, 1998).
 #include "io/plan/plan_lines.h"
 
 #include <algorithm>

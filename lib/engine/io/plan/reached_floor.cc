@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The floor that a disc sweeps, by its configuration space (T. Lozano-Pérez, Spatial planning: a
+// configuration space approach, 1983): the centre may be where no wall is within the radius, which
+// is the complement of a union of capsules; the piece with the start, swept by the disc again, is
+// the floor. This is a morphological opening, restricted to one component. Chords of capsules and
+// simplified outlines cost up to 1 % of the radius; the sweep uses a radius 1 % larger, so that
+// floor within reach is kept.
 #include <algorithm>
 #include <cmath>
 #include <iterator>

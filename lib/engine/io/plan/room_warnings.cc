@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Warnings about kept rooms that are probably not the ones meant: the frame of a sheet, a plot
+// around its house, tiles of a floor, the small part of a large drawing. Each names the option that
+// chooses otherwise.
 #include "io/plan/room_warnings.h"
 
 #include <algorithm>
