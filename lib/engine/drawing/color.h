@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Colours of pictures: chosen so that people with any colour vision, and readers of a grey print,
+// tell classes apart. Maps of categories use Okabe and Ito's palette (Color universal design,
+// 2008), maps of order fall in lightness with each step. Pure functions.
 #pragma once
 
 #include <cstddef>

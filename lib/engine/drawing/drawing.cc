@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stores the shapes of pictures.
+// Stores the shapes of pictures, in page units: views are applied when a shape is added, so that
+// writers read numbers of the page alone.
 #include "drawing/drawing.h"
 
 #include <algorithm>

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/drawing: a retained picture, and its writers for PNG, SVG and PDF. Uses raster; a
 // module links Cairo.
+//
+// A picture is drawn once and written in any format. Equal calls give equal bytes in SVG; PNG and
+// PDF also depend on the release of Cairo, see picture_difference.h. Fonts are those of the module,
+// never the machine's. The module is loaded for the first width of a text, PNG or PDF, which throws
+// FormatError if Cairo is missing; programs that draw no picture do not pay for it.
+//
+//     Picture picture(400, 300);
+//     picture.pushLayer("room");
+//     picture.area(outline, {palette::kFloor, Stroke{palette::kWall, 2}});
+//     picture.pop();
+//     picture.text({200, 20}, "Hall", {.size = 14, .align = Align::Center});
+//     writeAll("room.svg", picture.write(PictureFormat::Svg));
 #pragma once
 
 #include <cstddef>

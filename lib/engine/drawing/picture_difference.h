@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// For golden tests of pictures, which see another antialiasing on each release of Cairo.
 #pragma once
 
 #include <string>

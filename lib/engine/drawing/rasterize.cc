@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pixels and pages of a Picture, filled by the module that links Cairo, and PNG.
+// Pixels and pages of a Picture, filled by the module that links Cairo, and PNG. Large pictures are
+// drawn in horizontal bands by up to four threads; each band draws only the shapes that reach it,
+// with the same bytes as one pass.
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 

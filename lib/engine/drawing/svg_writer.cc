@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes pictures as SVG. Cairo's SVG writer does not support layers, ids and titles, which drawing
-// programs require, and converts text to outlines.
+// programs require, and converts text to outlines. SVG 1.1 (W3C, 2011), layers as
+// inkscape:groupmode; numbers have four decimals in millimetres, three in pixels, two in elements
+// of pages.
 #include <algorithm>
 #include <array>
 #include <cmath>

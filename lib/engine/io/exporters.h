@@ -3,9 +3,8 @@
 // the core, addExporters() adds those of extensions.
 //
 // Equal scenes give equal bytes for any number of threads. Numbers in text are the shortest
-// decimals that read back as the same doubles, unless a format rounds. Elements that a format
-// cannot hold are named in ExportedFiles::left_out. Tables are filled before the first use, by one
-// thread; reading them is thread-safe.
+// decimals that read back as the same doubles, unless a format rounds. Tables are filled before the
+// first use, by one thread; reading them is thread-safe.
 //
 //     const ExportFormat& format = exportFormat("geojson");
 //     writeAll("room.geojson", format.write(scene, document, {}).product);

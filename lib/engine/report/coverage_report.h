@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/report: coverage and runs as text, tables and JSON, maps, pages and pictures for
 // people.
+//
+// Text rounds for reading, JSON does not: its doubles are the shortest that read back the same. An
+// unknown metric is null in JSON and left out of text. Tables show figures by cells, exact ones and
+// the difference side by side, so that a reader sees the error of the cells. Equal reports give
+// equal bytes.
+//
+//     std::cout << coverageText(coverage.report);
+//     writeAll("report.json", coverageJson(coverage.report));
 #pragma once
 
 #include <span>
@@ -19,9 +27,8 @@ struct ReportedRoom {
     const CoverageReport* report = nullptr;
 };
 
-/// Writes one JSON object and a newline, schema ispace-coverage/1, with the
-/// members of its sections: the
-/// report of a room alone, which is a site of one.
+/// Writes one JSON object and a newline, schema ispace-coverage/1, with the members of its
+/// sections: the report of a room alone, which is a site of one.
 std::string coverageJson(const CoverageReport& report, const ReportParts& parts = {});
 /// Writes a room of several so: without `rooms`, as an item of `storeys`.
 std::string storeyJson(const CoverageReport& report, const ReportParts& parts);

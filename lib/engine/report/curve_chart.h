@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Coverage over the number of sensors, with bounds on the best there can be, as table, CSV and
+// chart. Shares are fractions in CSV and per cent elsewhere.
 #pragma once
 
 #include <string>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What reports tell besides the floor: a run, suggestions, rules of cameras. A report knows its
-// sections by this interface alone.
+// Sections of reports besides the floor: a run, suggestions, rules of cameras. A report knows its
+// sections by this interface alone, so an extension adds a section without a change of the report.
+// Names of members in JSON are unique in a report; sections of equal rank keep the order in which
+// they were added.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables in text.
+// Tables in text, for terminals and fixed-width files. Widths are counted in bytes: cells of ASCII
+// align.
 #pragma once
 
 #include <string>

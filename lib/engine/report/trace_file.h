@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The poses that a search of arrange has tried, as a file that maps read.
 #pragma once
 
 #include <string>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The rooms that an import has found, as a table and as marks on its plan: users choose among them
+// by --inside with a point of the room.
 #pragma once
 
 #include <span>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Draws placed records on a plan: sensors with their fields of view, tags, mats, gates, robots,
-// people; and names.
+// people; and names. A label takes the cheapest of eight directions and up to four distances around
+// its mark; covering another label costs most, then marks, then lines.
 #include <algorithm>
 #include <array>
 #include <cmath>

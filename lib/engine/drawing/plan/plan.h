@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/drawing/plan: the plan of a scene, its view from above as shapes of a picture. Uses
 // scene, drawing, raster.
+//
+// Plans, maps of coverage and pages draw a room by the same functions, so that a thing looks alike
+// in all of them. Walls are cut at 1.2 m, as in drawings of buildings (ISO 128): lower parts are
+// pale, higher ones dashed.
+//
+//     writeAll("room.pdf", drawPlan(scene, {.format = PictureFormat::Pdf, .title = "Hall"}));
 #pragma once
 
 #include <cstddef>
@@ -70,7 +76,8 @@ void drawMarkLabel(Picture& picture, Point2 mark, Point2 middle, const std::stri
 bool crosses(const Segment2& line, const Box2& box);
 
 /// Finds positions of signs and labels where they cover little, in page units. Each looks at the
-/// shapes near it alone.
+/// shapes near it alone. Greedy: positions depend on the order of calls, never change later, and
+/// are no optimum.
 class LabelPlacer {
   public:
     LabelPlacer(const Box2& frame, double em);

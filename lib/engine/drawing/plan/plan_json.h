@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The plan for web pages, which draw it themselves.
 #pragma once
 
 #include "base/json_writer.h"

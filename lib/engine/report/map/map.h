@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/report/map: maps of coverage, with their legends.
+//
+// Classes of pixels are those of EN 62676-4:2015 or of IEC 62676-4:2025. Colours of redundancy fall
+// in lightness, colours of sensors are Okabe and Ito's; hatches and dashes tell apart in grey.
+//
+//     const std::string pdf = drawCoverageMap(scene, coverage, {.format = PictureFormat::Pdf});
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Thins and clips the curves of coverage for the page, and fills the floor with their colours.
+// Classes are drawn over each other, the lowest first, since renderers leave pale seams between
+// areas that only touch. A picture has at most 400 000 corners of views: more are shared out among
+// sensors, each outline keeping the corners that lie farthest from its chord (D. H. Douglas,
+// T. K. Peucker, 1973).
 #include <algorithm>
 #include <array>
 #include <queue>

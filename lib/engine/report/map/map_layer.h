@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Layers that sections of a report add to its map, see ReportSection::mapLayer().
 #pragma once
 
 #include <optional>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws sensors on a map: each with its view, mark and id; and signs of unseen spots.
+// Draws sensors on a map: each with its view, mark and id; and signs of unseen spots. More than
+// kCrowd sensors have smaller marks, and beams are thinned until their ends are apart.
 #include <algorithm>
 #include <array>
 #include <cmath>

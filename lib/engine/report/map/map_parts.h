@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of a coverage map, which maps of runs and pages share.
+// Parts of a coverage map, which maps of runs and pages share. Page units with y down unless a view
+// is pushed, then metres; `em` is the size of text, by which all pens and marks scale.
 #pragma once
 
 #include <array>

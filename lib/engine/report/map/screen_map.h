@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Maps for screens, whose readers switch layers on and off: all layers are in one picture.
 #pragma once
 
 #include "coverage/coverage.h"

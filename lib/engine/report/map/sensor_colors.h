@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Colours of sensors, the same in all maps and tables of a report.
 #pragma once
 
 #include <cstddef>
