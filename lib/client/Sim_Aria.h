@@ -17,6 +17,10 @@
 /// keys, configurations, functors and threads; ispace-wire(7) lists AriaCoda's examples by name.
 /// Devices that a robot of simrun does not have (sim_aria/hardware.h) are missing at run time.
 /// ArNetworking is not supported.
+///
+/// Names and meanings follow ARIA and AriaCoda; the code is ours. Errors are told as there: a
+/// function returns false, or writes a line to the log and goes on. As there, hold ArRobot's lock
+/// around commands and getters in other threads than its own.
 #ifndef SIM_ARIA_H
 #define SIM_ARIA_H
 

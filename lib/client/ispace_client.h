@@ -17,6 +17,12 @@
 /// Functions block until the server has answered, for at most Options::timeout seconds of wall
 /// time; errors are exceptions of <ispace_client/error.h> with the server's text. In CMake:
 /// find_package(ispace_client), ispace::client.
+///
+/// An object is one TCP connection and one role; use it in one thread at a time, and different
+/// objects in different threads. Its destructor closes the connection: a robot then brakes, and
+/// other clients may drive it. Each call is a round trip; streams save it, and send the newest
+/// reading to a program that is slow. The protocol is ispace-protocol(7),
+/// version 1; an object refuses servers of another version when it connects.
 #ifndef ISPACE_CLIENT_H
 #define ISPACE_CLIENT_H
 

@@ -22,8 +22,18 @@ struct Options {
 /// unsolicited messages, which are stored until they are requested.
 ///
 /// One thread at a time may use it. Open a connection for each robot and sensor.
+///
+/// Unsolicited messages wait in queues of 10 000 ends and events and 64 scans; beyond these the
+/// oldest is dropped. After a Timeout the connection remains usable: an answer that comes late is
+/// recognised and dropped. After ConnectionError and ProtocolError it is not.
+///
+///     Connection server("127.0.0.1:7001");
+///     server.ask("WORLD");
+///     const double t = server.ask("TIME").fields.number("t");
 class Connection {
   public:
+    /// Connects, reads the greeting and shows the token, if Options has one.
+    /// \throws ConnectionError, Timeout, ProtocolError (another version), Refused (full, token)
     explicit Connection(const Address& address, const Options& options = Options())
         : options_(options), socket_(address, Deadline(options.timeout)) {
         const Deadline deadline(options_.timeout);

@@ -8,7 +8,7 @@
 namespace ispace {
 namespace client {
 
-/// Base of all exceptions of this library.
+/// Base of all exceptions of this library; what() is a sentence for people, and not stable.
 class Error : public std::runtime_error {
   public:
     explicit Error(const std::string& what) : std::runtime_error(what) {}

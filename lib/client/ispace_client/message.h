@@ -69,7 +69,7 @@ inline std::string textOf(double value) {
     }
 }
 
-/// Splits `text` at separators; empty for an empty text.
+/// Splits `text` at separators; empty for an empty text. Parts may be empty: "a,,b" has three.
 inline std::vector<std::string> split(const std::string& text, char separator) {
     std::vector<std::string> parts;
     for (std::size_t begin = 0; begin < text.size() || !parts.empty();) {
@@ -147,7 +147,7 @@ struct Message {
     std::string word(std::size_t i) const { return i < words.size() ? words[i] : std::string(); }
 };
 
-/// Decodes base64.
+/// Decodes base64 (RFC 4648, section 4) up to the first `=`. \throws ProtocolError for other bytes
 inline std::string fromBase64(const std::string& text) {
     std::string bytes;
     unsigned bits = 0;

@@ -7,7 +7,7 @@
 namespace ispace {
 namespace client {
 
-/// The output of a passive infrared sensor.
+/// The output of a passive infrared sensor: a switch, without number or place of the people.
 struct Presence : Reading {
     bool motion = false;  ///< people move in its sight, or did within the hold time
 

@@ -14,7 +14,8 @@
 namespace ispace {
 namespace client {
 
-/// Common part of all readings; used alone for a sensor of any kind.
+/// Common part of all readings; used alone for a sensor of any kind. Readings are values: they do
+/// not refer to the connection. from() throws ProtocolError for a message that is incomplete.
 struct Reading {
     std::string sensor;  ///< id
     double time = 0;     ///< simulated seconds

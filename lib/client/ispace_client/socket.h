@@ -79,7 +79,8 @@ class Deadline {
     bool never_ = false;
 };
 
-/// A TCP connection; calls block no longer than their deadline.
+/// A TCP connection; calls block no longer than their deadline, except for the resolution of a
+/// host's name, which the system bounds. Sends without delay (TCP_NODELAY), raises no SIGPIPE.
 class Socket {
   public:
     /// \throws ConnectionError, Timeout

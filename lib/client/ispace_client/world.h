@@ -31,7 +31,13 @@ struct Lift {
     std::vector<std::string> calls;  ///< storeys, in the order in which it serves them
 };
 
-/// The simulated world and its clock (role WORLD).
+/// The simulated world and its clock (role WORLD). Any number of clients may have the role; each
+/// may change the world, if the server permits.
+///
+///     World world("127.0.0.1:7001");
+///     world.pause();
+///     world.set("desk1", "at", "2,3");
+///     world.step(200);  // 1 s of a world with dt = 0.005
 class World {
   public:
     explicit World(const Address& address, const Options& options = Options())
@@ -158,7 +164,8 @@ class World {
     /// \return its id
     std::string add(const std::string& record) { return change("ADD " + record).text("id"); }
     void remove(const std::string& id) { change("DELETE " + id); }
-    /// Loads another room. The server opens the files; `layout` may be empty.
+    /// Loads another room. The server opens the files, which must lie in the folder of its scene;
+    /// `layout` may be empty. Robots of the old room are gone: their clients' calls are refused.
     void load(const std::string& environment, const std::string& layout = "") {
         const std::string files = environment + (layout.empty() ? "" : " " + layout);
         warning_ = connection_.ask("LOAD " + files, kLoadTimeout).fields.text("warning", "");

@@ -13,7 +13,8 @@
 
 class ArRobot;
 
-/// A behaviour of a robot: fire() computes the motion that it wants in each cycle.
+/// A behaviour of a robot: fire() computes the motion that it wants in each cycle. It is called in
+/// the thread of the cycle with the robot's lock held, so it may read the robot and must not sleep.
 class ArAction {
   public:
     explicit ArAction(const char* name, const char* description = "")

@@ -19,7 +19,8 @@ namespace sim_aria {
 /// The program's clock: simulated time while connected to a world, wall time before. The program's
 /// milliseconds are simulated milliseconds, independent of the speed of the run. With the clock
 /// `step` the program drives the time: the world advances while it sleeps, and the robots' cycles
-/// run then, in the same thread, so that runs are reproducible.
+/// run then, in the same thread, so that runs are reproducible. Once the run has ended, time goes
+/// on as wall time from there. Thread-safe.
 class Clock {
   public:
     static Clock& get() {

@@ -11,7 +11,9 @@
 #include <sim_aria/range_device.h>
 #include <sim_aria/typedefs.h>
 
-/// A laser on a robot of simrun: its current buffer holds the points of the newest scan.
+/// A laser on a robot of simrun: its current buffer holds the points of the newest scan, each at
+/// the pose of the robot when it was measured. It is read in the robot's cycle: scans that come
+/// between two cycles are skipped. Hold lockDevice() around readings in other threads.
 class ArLaser : public ArRangeDevice {
   public:
     /// \param id the laser in simrun; "": the one of this number on the robot

@@ -30,7 +30,9 @@ class ArLineFinderSegment : public ArLineSegment {
 };
 
 /// Finds the straight lines in a laser's newest scan: splits the row of points at its farthest
-/// point until each part is straight, and fits a line to each part.
+/// point until each part is straight (U. Ramer, An iterative procedure for the polygonal
+/// approximation of plane curves, 1972; "split and merge" without the merge), and fits a line to
+/// each part by least squared distances. O(points^2) at worst, O(points log points) as a rule.
 class ArLineFinder {
   public:
     explicit ArLineFinder(ArRangeDevice* device) : myDevice(device) {}

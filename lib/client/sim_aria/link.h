@@ -30,6 +30,10 @@ struct Packet {
 };
 
 /// One robot of simrun in ARIA's units. Functions throw ispace::client::Error.
+///
+/// Rounding is a Pioneer's: positions and speeds in whole mm and mm/s, headings in 4096ths of a
+/// turn, rates in tenths of a degree a second, sonars in whole mm up to 5000. Poses begin at 0, 0,
+/// 0 with the connection, whatever the robot drove before.
 class Link {
   public:
     /// Takes the first robot that no other client drives: of the variable ISPACE_ROBOT ("r1,r2"),

@@ -48,7 +48,8 @@ class Ordered {
 };
 
 /// State of the process shared by all robots: the robots to stop and disconnect at its end, and a
-/// thread that waits for signals, since a signal handler may do neither.
+/// thread that waits for signals, since a signal handler may do neither: the handler writes the
+/// number into a pipe (the self-pipe trick). The process then ends with status 1.
 class Process {
   public:
     static Process& get() {

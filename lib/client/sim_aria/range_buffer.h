@@ -11,7 +11,8 @@
 #include <sim_aria/geometry.h>
 #include <sim_aria/util.h>
 
-/// The last points that a range device measured, the newest first.
+/// The last points that a range device measured, the newest first. Adding is O(1), searches visit
+/// all points. Not thread-safe: its device's lock guards it.
 class ArRangeBuffer {
   public:
     using Points = std::list<ArPoseWithTime>;

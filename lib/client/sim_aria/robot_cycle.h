@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Implementation of ArRobot: connecting, the cycle, commands. Part of sim_aria/robot.h.
+//
+// A cycle reads a packet, calls handlers and tasks of interpretation, resolves the actions, sends
+// changed speeds, and calls user tasks, all with the lock held. A cycle that begins late is not
+// made up for. With the clock `step` the cycle has no thread: Clock calls it while the program
+// sleeps.
 #ifndef SIM_ARIA_ROBOT_CYCLE_H
 #define SIM_ARIA_ROBOT_CYCLE_H
 

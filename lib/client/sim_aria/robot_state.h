@@ -17,7 +17,9 @@
 
 namespace sim_aria {
 
-/// State of a robot as of its last status packet; base of ArRobot.
+/// State of a robot as of its last status packet; base of ArRobot. Packets have the layout of a
+/// Pioneer's server information packets (Pioneer 3 Operations Manual), little-endian, so that
+/// programs which parse them find their fields.
 class RobotState {
   public:
     enum ChargeState {
