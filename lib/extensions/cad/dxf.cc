@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A plan from a parsed DXF drawing (dxf_drawing.h). Blocks are expanded here, since their layers,
+// scales and mirrors depend on the insert; a block of few bytes may be inserted a million times, so
+// each insert, entity and point is paid for. Then io/plan does the rest, as for SVG. A drawing may
+// be imported several times: with another unit, or with layers of walls alone, so that a message
+// can name the effect of an option instead of guessing it.
 #include <algorithm>
 #include <array>
 #include <cmath>

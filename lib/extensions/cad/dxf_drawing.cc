@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parses ASCII DXF: pairs of lines, a group code and a value (Autodesk, DXF Reference). The parser
+// is written here since the usual libraries trust counts in the file and read what they know alone:
+// this one counts and places everything that it leaves out, so that a missing wall is a warning.
+// Numbers that do not matter are never parsed.
+//
+// Entities in space have an extrusion direction; the arbitrary axis algorithm gives their plane.
+// Those in the plane of the plan are read, seen from below mirrored; tilted ones are left out and
+// placed.
 #include "extensions/cad/dxf_drawing.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A DXF file as entities, in its own units and without expanding blocks. Source: Autodesk, DXF
+// Reference (AutoCAD 2012 and later); entities of blocks keep the coordinates of the block.
 #pragma once
 
 #include <cstddef>

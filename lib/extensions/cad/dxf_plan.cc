@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Draws rooms and coverage as DXF, layer by layer: readers draw in the order of the file, so
+// fillings come first. Arcs are bulges of polylines, exact up to rounding; fillings (SOLID) have
+// chords with the area of their arcs.
 #include "extensions/cad/dxf_plan.h"
 
 #include <algorithm>

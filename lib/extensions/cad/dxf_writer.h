@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes ASCII DXF of AutoCAD 2000 (AC1015), the oldest version with true colours and extended data
+// that all readers take.
 #pragma once
 
 #include <memory>

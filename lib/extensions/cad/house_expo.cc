@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads plans of HouseExpo (T. Li et al., HouseExpo: A large-scale 2D indoor layout dataset for
+// learning-based algorithms on mobile robots, 2019). The JSON is parsed as a stream: members that
+// are not imported, and depth, cost no memory.
 #include "extensions/cad/cad.h"
 
 #include <algorithm>

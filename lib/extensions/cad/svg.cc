@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A plan from SVG (W3C, SVG 1.1 and 2; CSS 2.1 cascade in svg_sheet.cc). The document is walked
+// with the state that elements inherit: transform, style, names, clip. `use` shares elements, so a
+// small file may draw a million: each use is paid for. Scale is the hard part: pages state it, or
+// the drawing's contents decide (io/plan/drawing_unit.h).
 #include "extensions/cad/cad.h"
 
 #include <algorithm>

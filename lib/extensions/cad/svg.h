@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parsers of SVG's attributes, and the style and names of elements. For lib/engine/io only.
+// Parsers of SVG's attributes, and the style and names of elements. Private to lib/extensions/cad.
 #pragma once
 
 #include <array>

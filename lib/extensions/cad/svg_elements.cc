@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Elements of SVG: the properties, transforms, names and shapes that one element states, before it
+// is placed.
 #include "extensions/cad/svg.h"
 
 #include <algorithm>

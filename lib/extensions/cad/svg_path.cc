@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parses attributes of SVG by its grammar (SVG 2, chapters 8 and 9). Arcs become centre form by
+// appendix B.2.4; radii that are too small grow, as B.2.5 demands. Smooth curves mirror the control
+// point before them.
 #include "extensions/cad/svg.h"
 
 #include <algorithm>

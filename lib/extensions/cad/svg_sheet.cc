@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Matches rules of style with elements. Rules are sorted by the id, class or name that their
+// subject needs, so an element is compared with few; a comparison visits at most kMaxSelectorSteps
+// elements, and hostile sheets are paid for in work.
 #include <algorithm>
 #include <array>
 #include <string>

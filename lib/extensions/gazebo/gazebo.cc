@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Shapes of a world in SDF, with the frames of their models, as solids of lib/extensions/worlds.
+// Collisions count, since they stop robots; visuals only of links without collisions.
 #include "extensions/gazebo/gazebo.h"
 
 #include <pugixml.hpp>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Storeys of an IFC building: which of them is a room, which are a site. A confined program parses
+// the file and cuts its geometry (module/building.h); here are boxes, sections and names alone.
 #include "extensions/ifc/ifc_import.h"
 
 #include <algorithm>

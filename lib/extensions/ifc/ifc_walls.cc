@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Walls of a scene as IFC wants them: bodies with openings. Rooms from plans have the two faces of
+// a wall as lines without thickness; faces that an opening joins are the sides of one solid, which
+// is found here and written as a wall.
 #include "extensions/ifc/ifc_walls.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Walls with two faces, for programs that know no single faces.
 #pragma once
 
 #include <cstddef>

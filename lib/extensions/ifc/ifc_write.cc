@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes a scene as IFC4 (ISO 16739-1:2018), Reference View: products with placements, swept solids
+// and faceted bodies, openings that void walls, doors and windows that fill openings, spaces with
+// areas. GUIDs are hashes, so that a room written twice has the same ones, and programs recognise
+// its parts.
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Text of STEP files (ISO 10303-21): strings, reals, lists, GUIDs in base 64 (22 digits, the first
+// of which holds two bits). Times of the header are left out, so that equal models are equal bytes.
 #include "extensions/ifc/ifc_write_model.h"
 
 #include <cmath>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads .ifczip (buildingSMART: a zip with one .ifc). The unpacked size is paid for before memory
+// is allocated, and no more is unpacked, so a zip bomb ends at the budget.
 #include "extensions/ifc/ifc_zip.h"
 
 #include <minizip/unzip.h>

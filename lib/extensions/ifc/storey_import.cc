@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes the records of a storey: walls with their openings from the section 1 m above the floor,
+// spaces as zones, things as boxes. A door may come as an opening with a filling, an opening alone,
+// a filling alone, or a gap in the body of the wall; each becomes one opening in whole walls.
+// Spaces choose the rooms, since modellers draw them on purpose.
 #include "extensions/ifc/storey_import.h"
 
 #include <algorithm>

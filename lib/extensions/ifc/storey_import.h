@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A storey of a building as the records of a room.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads maps of ARIA and MobileSim (MobileRobots, ARIA map file format: LINES, DATA, Cairn;
+// millimetres). Points of a laser become cubes on a grid unless a line explains them.
 #include "extensions/maps/maps.h"
 
 #include <algorithm>

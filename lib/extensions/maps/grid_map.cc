@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads grid maps of MovingAI (N. Sturtevant, Benchmarks for grid-based pathfinding, 2012), y
+// upwards from the last row.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

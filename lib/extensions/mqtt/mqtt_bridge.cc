@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A session of the protocol's role WORLD stands behind the bridge, so that commands of MQTT pass
+// the same checks, limits and turns as those of TCP. Descriptions are published when things come or
+// go, states when they change.
 #include "extensions/mqtt/mqtt_bridge.h"
 
 #include <algorithm>

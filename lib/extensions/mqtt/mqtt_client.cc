@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A client of MQTT 3.1.1 (OASIS, 2014) by libmosquitto, which runs in a thread. One message is
+// under way at a time: QoS 1 repeats messages after a reconnection, and a second one under way
+// could overtake the first. For a broker that is away 100 000 messages are kept, then the oldest
+// are dropped.
 #include "extensions/mqtt/mqtt_client.h"
 
 #include <dlfcn.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Publishes movers twice a simulated second, and pictures each ten: home automation is slow, and
+// pictures cost the world time. A robot that returns to its base is driven by a session, as a
+// client would drive it.
 #include "extensions/mqtt/mqtt_movers.h"
 
 #include <chrono>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Robots, people and cameras for home automation.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Two runs under one prefix would fight over retained messages. A run asks before it publishes; one
+// that lives answers at once. A status "online" without an answer within a second is that of a run
+// that died.
 #include "extensions/mqtt/mqtt_survey.h"
 
 #include <algorithm>

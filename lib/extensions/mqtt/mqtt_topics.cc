@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Payloads and descriptions. Source: Home Assistant, "MQTT Discovery"
+// (homeassistant/COMPONENT/OBJECT/config, JSON). An id is escaped so that distinct ids are distinct
+// topics.
 #include "extensions/mqtt/mqtt_topics.h"
 
 #include <algorithm>

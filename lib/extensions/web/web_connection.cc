@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// HTTP/1.1 (RFC 9110, RFC 9112) and WebSockets (RFC 6455) by Boost.Beast, without threads. One
+// message is under way each way; while a client does not read, its dialogue makes none. Headers are
+// at most 8 KiB, a request or response takes at most 10 s, a silent WebSocket is pinged and closed
+// after 60 s.
 #include "extensions/web/web_connection.h"
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Includes Asio.
+// Connections of browsers and of other clients of WebSockets. Includes Asio.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The interface between a port for WebSockets and the languages spoken there. Private to
-// lib/engine/server.
+// The interface between a port for WebSockets and the languages spoken there: the page here,
+// Foxglove and rosbridge in lib/extensions/ros. A dialogue is the server's side of one client
+// without transport; it makes output on request, so that a slow reader costs no memory.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Origins follow RFC 6454: scheme, host and port. Requests with another Host are refused, which
+// defeats DNS rebinding; the policy of contents lets the page load from this server alone.
 #include "extensions/web/web_files.h"
 
 #include <algorithm>

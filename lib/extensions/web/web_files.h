@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The files of the page, and the origins that may use it.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The dialogue of a page: requests of the protocol in messages of a WebSocket, and frames. Memory
+// is bounded: one message each way, replies up to a limit, and the newest frame, which all
+// dialogues share.
 #include "extensions/web/web_page.h"
 
 #include <algorithm>

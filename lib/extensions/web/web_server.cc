@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Connections of a site, in order of arrival. A full server drops the oldest one that only fetches
+// files, then the WebSocket that has been idle longest.
 #include "extensions/web/web_server.h"
 
 #include <algorithm>

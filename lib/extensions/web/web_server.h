@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Includes Asio.
+// A port for WebSockets and the files of a page: at most 64 connections, since a browser uses some
+// six for files and one for each robot that it drives. Includes Asio.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parses the syntax of Webots' worlds (VRML97: ISO/IEC 14772-1, clause 5; Webots, "Scene Tree"),
+// without the types of nodes and fields. Nodes are stored once; USE shares them.
 #include "extensions/webots/vrml.h"
 
 #include <algorithm>

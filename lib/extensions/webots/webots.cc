@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Solids of a world of Webots (Cyberbotics, Webots Reference Manual R2022a to R2023b): poses of
+// nested nodes are multiplied, scales kept apart where a rotation does not mix their axes.
 #include "extensions/webots/webots.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Telegrams of CoLa as bytes, see cola.h for the sources. Untrusted: a telegram has at most 1024
+// bytes, and bytes that are none are skipped up to the next beginning.
 #include "extensions/wire/cola.h"
 
 #include <algorithm>

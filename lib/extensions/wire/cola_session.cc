@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Answers of a laser of SICK. Where drivers disagree with the telegram listing, answers follow
+// recorded telegrams.
 #include "extensions/wire/cola.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Ports of simulated devices.
 #pragma once
 
 #include <list>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bytes between a socket and a session. Requests are read in blocks of 256 bytes, so that replies
+// stay small; a client that leaves 64 KiB unread is not read, and after ten seconds without
+// progress it is closed.
 #include "extensions/wire/device_port.h"
 
 #include <netinet/in.h>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Includes Asio.
+// TCP for the protocols of devices: connections, their patience, and the world of a robot or
+// sensor. Includes Asio.
+//
+// As with the devices, one client (or WireProtocol::clients) is served; others are disconnected
+// silently. A client that is not engaged and has made no request for a second yields to a newcomer.
+// A device's protocol carries no token: addresses decide (ServerLimits::allowed).
 #pragma once
 
 #include <boost/asio/io_context.hpp>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A reader of HTTP for one request. Heads that parsers read differently (folded lines, blanks
+// before a colon) are refused, since a proxy in front might have understood another request.
 #include "extensions/wire/mjpeg_session.h"
 
 #include <algorithm>

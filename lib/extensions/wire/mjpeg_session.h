@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures of cameras over HTTP, as network cameras serve them: MJPEG (multipart/x-mixed-replace,
+// RFC 2046 with the replacement of Netscape) at /, /stream, /stream.mjpg and /video, single
+// pictures otherwise. Requests of foreign web pages are refused by their Host. Slow readers skip
+// pictures, never parts of one.
 #pragma once
 
 #include <cstddef>

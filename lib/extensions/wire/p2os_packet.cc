@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Packets of a Pioneer as bytes: FA FB, length, id, data, checksum (ActivMedia, Pioneer 2
+// Operations Manual, "Client commands and server information packets").
 #include "extensions/wire/p2os_packet.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A Pioneer's controller: synchronisation, motion with its own ramps, packets at 10 Hz. The world
+// moves the robot; here are the controller's odometry, which begins at 0, and its stalls.
 #include "extensions/wire/p2os_session.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures as files for all ports, captured once.
 #pragma once
 
 #include <chrono>

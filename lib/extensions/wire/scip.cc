@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// SCIP as bytes, see scip.h for the source. Numbers are six bits a character from '0' on, most
+// significant first; the check character is the low six bits of a line's sum, plus '0'.
 #include "extensions/wire/scip.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Answers of a laser of Hokuyo: two-letter commands, statuses of two digits, and streams that the
+// world's periods feed.
 #include "extensions/wire/scip.h"
 
 #include <algorithm>

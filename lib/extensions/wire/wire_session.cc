@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The table of protocols: a new one is added here.
 #include <array>
 #include <exception>
 #include <functional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Tags as lines of text, one for each tag and report.
 #include "extensions/wire/zps_session.h"
 
 #include <utility>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A room from the solids of a world. Worlds do not say which solids are walls: boxes with the form
+// or the name of one are, then polylines, and meshes only if these enclose no room. Mid-lines
+// replace boxes, so that rooms keep their walls' thickness and openings their wall.
 #include "extensions/worlds/world_import.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Boxes as walls, and meshes cut into walls. Ends of boxes meet at faces; each is moved along its
+// line onto the mid-line that it meets, at most by that wall's thickness.
 #include "extensions/worlds/world_import.h"
 #include "geom/tolerance.h"
 
