@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Requests over standard input, a line each, arrays in shared memory (vector_segment.h): a step is
+// one line each way, whatever the number of worlds.
 #include "extensions/learning/learning.h"
 
 #include <poll.h>

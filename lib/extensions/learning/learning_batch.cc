@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Worlds are stepped in groups of 16 by TBB. Each has its random numbers, and threads share only
+// immutable rooms and scratch memory, so results do not depend on the number of threads or worlds.
 #include "extensions/learning/learning_batch.h"
 
 #include <tbb/blocked_range.h>

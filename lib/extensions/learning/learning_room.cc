@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Precomputes what thousands of worlds of one room ask all the time: free cells, goals with the
+// ways to them, lines by cells, and lower bounds of clearances. Ways are shortest paths over 8
+// neighbours with costs 12 and 17 (R. B. Dial, Algorithm 360: shortest-path forest with topological
+// ordering, 1969): 17 / 12 is within 0.2 % of the square root of 2.
 #include "extensions/learning/learning_room.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads tasks. Unknown keys are errors at their lines, as a misspelt reward would train another
+// task.
 #include "extensions/learning/learning_task.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Steps one world with the functions of sim: limits, steering of people, collisions. Pairs of
+// movers that cannot meet within a step are told by lanes of eight.
 #include "extensions/learning/learning_world.h"
 
 #include <algorithm>

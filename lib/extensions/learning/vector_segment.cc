@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lays out the segment and reserves its memory at once, since a later lack of memory would be a
+// signal (SIGBUS) to both sides.
 #include "extensions/learning/vector_segment.h"
 
 #include <fcntl.h>

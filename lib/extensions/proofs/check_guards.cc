@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Checks that no point of the floor sees more weight of witnesses than a unit. The floor is cut
+// into convex parts along cones of witnesses, the heaviest first, until in each part the witnesses
+// whose cones may meet it weigh no more. Tests err to one side: a cone counts unless it is clear of
+// the part by more than its blur, which bounds all roundings. So a valid proof may be refused for
+// its size, but no wrong one passes.
 #include "extensions/proofs/check_guards.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sight over triangles, as triangular expansion does it (F. Bungiu et al., Efficient computation of
+// visibility polygons, 2014): a cone leaves a triangle by an edge and is narrowed by its ends. This
+// is other code than that of the search, which uses VisibilityMap.
 #include "extensions/proofs/guard_cones.h"
 
 #include <tbb/parallel_for.h>

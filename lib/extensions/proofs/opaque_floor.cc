@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Compares sight in a scene with sight within the outlines of its floor. Proofs are about the
+// outlines alone, so each edge of the floor must be a wall, and no sheet may stand within it.
 #include "extensions/proofs/opaque_floor.h"
 
 #include <algorithm>

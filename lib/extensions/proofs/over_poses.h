@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Proofs of arrange over all poses, not over candidates: the fewest lasers that see a floor, and
+// bounds of the coverage of up to four sensors.
+//
+// What is proven: the area by exact geometry in doubles, with sight blocked by the edges of the
+// free floor at the sensors' height. Bounds hold for every pose, headings included, and err to the
+// safe side. A proof can be stored as a certificate and checked by other code (arrange --verify).
+// Errors are UsageError for scenes that the proofs do not cover.
 #pragma once
 
 #include <cstddef>

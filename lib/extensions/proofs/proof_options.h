@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Options of arrange for proofs over poses and for their certificates.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Aligns poses by the simulation: unknowns are a move of all poses, then one of each scan,
+// residuals the beams. Derivatives are differences (1 mm, 0.03 degrees); beams that jump to another
+// surface have none. Cauchy's loss makes people and errors of the plan count little; its width
+// shrinks, so that a start half a metre off still finds the walls.
 #include "extensions/reality/align.h"
 
 #include <tbb/parallel_for.h>

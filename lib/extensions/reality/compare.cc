@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Simulates a log: sensors are matched by id or topic, poses chosen, beams cast by the ray caches
+// of the scene, and each end assigned to the element that it hits.
 #include "extensions/reality/compare.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Fits noise to residuals. Terms are added only if the Bayesian information criterion justifies
+// them (G. Schwarz, Estimating the dimension of a model, 1978). Odometry: variances of turn and way
+// as linear functions of both (Probabilistic Robotics, section 5.4), by iterated weighted least
+// squares, without motions beyond five deviations, which are wrong matches of scans.
 #include "extensions/reality/fit.h"
 
 #include <Eigen/Dense>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads logs of any format into one form. Logs are untrusted: sizes and numbers are bounded.
 #include "extensions/reality/log.h"
 
 #include <algorithm>

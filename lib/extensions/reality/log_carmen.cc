@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// CARMEN's logs (carmen.sourceforge.net, "Log file format": FLASER, ROBOTLASER, ODOM). The format
+// does not say which of two poses is corrected, nor the bearings of FLASER: both are decided by the
+// whole log.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Reads MCAP (mcap.dev, specification; lz4 and zstd chunks). Chunks are bounded by their ratio, so
+// that few bytes cannot become many.
 #include <lz4frame.h>
 #include <zlib.h>
 #include <zstd.h>

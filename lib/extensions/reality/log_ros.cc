@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Messages of ROS 2 in CDR: scans, clouds, pictures, odometry, transforms. Ranges follow REP 117:
+// infinite ones are no return, those outside of the limits are discarded. Poses are interpolated
+// between the transforms around a time.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

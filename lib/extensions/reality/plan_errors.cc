@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Cells vote: a scan counts once for each kind in a cell, so a robot that stands still does not
+// outvote the others. Regions of cells with more disagreement than agreement are errors; pairs of a
+// gone and a new one are moves.
 #include "extensions/reality/plan_errors.h"
 
 #include <algorithm>

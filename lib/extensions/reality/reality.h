@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Options of scan that compare a log with a plan.
 #pragma once
 
 #include <memory>

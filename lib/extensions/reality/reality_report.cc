@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of a comparison: tables of residuals by range, incidence, bearing, surface and time.
+// Spreads are robust (1.4826 times the median deviation), so that a person in the way is no spread.
 #include "extensions/reality/reality_report.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Source: Foxglove, "WebSocket protocol v1" (github.com/foxglove/ws-protocol, docs/spec.md) and its
+// SDK. Requests are untrusted: JSON of at most 256 KiB and 32 levels, at most 256 channels, 4096
+// watched parameters, 8 assets under way.
 #include "extensions/ros/foxglove_dialogue.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Foxglove's viewers, and programs that speak as these.
 #pragma once
 
 #include <cstdint>

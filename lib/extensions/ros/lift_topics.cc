@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lifts as topics: the storey at which one stands, and the share by which its doors are open.
 #include <algorithm>
 
 #include "extensions/ros/ros_source.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Open-RMF's topics of lifts, doors and fleets (rmf_internal_msgs: rmf_lift_msgs, rmf_door_msgs,
+// rmf_fleet_msgs), so that its supervisors and adapters run against the simulated building.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An action is three services and two topics (design.ros2.org, "Actions"): send_goal, get_result,
+// cancel_goal, feedback, status. At most 32 goals are remembered for each robot.
 #include "extensions/ros/ros_actions.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Answers as rosapi of rosbridge_suite gives them. The graph has one node, the run.
 #include "extensions/ros/ros_api.h"
 
 #include <algorithm>

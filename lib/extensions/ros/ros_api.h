@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The services of rosapi.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The one owner of the feed, and of all that reads it: ports, the node, the log. A step computes
+// each wanted message once.
 #include "extensions/ros/ros_bridge.h"
 
 #include <algorithm>

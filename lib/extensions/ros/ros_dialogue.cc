@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Queues of a client. A subscription keeps as many messages as its depth, all of them together 8
+// MiB, answers 4 MiB; the oldest message is dropped first, and dropped messages are counted as
+// losses.
 #include "extensions/ros/ros_dialogue.h"
 
 #include <algorithm>

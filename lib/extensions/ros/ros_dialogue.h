@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What Foxglove and rosbridge have in common.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A topic has a number as long as it exists. Its message is computed when its period begins and a
+// client wants it; CDR first, JSON and CBOR from that on the first request. Frames of heavy sensors
+// are made one at a time, in turn, so that no sensor starves the others.
 #include "extensions/ros/ros_feed.h"
 
 #include <exception>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Messages of topics, encoded once for all clients, in the world's thread or, of pictures and maps,
+// in a background one.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Messages are written in the order of times and, within a time, of topics: background jobs end in
+// any order, and the file must not depend on it. So those of a time wait until the next one.
 #include "extensions/ros/ros_log.h"
 
 #include <limits>

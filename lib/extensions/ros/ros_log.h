@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Topics as an MCAP file or bag.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A node without rcl: names and types are mangled as rmw does (design.ros2.org, "Topic and Service
+// name mapping to DDS"), and the graph is told by ros_discovery_info. Messages go out in bursts of
+// 32 KiB with pauses of 1 ms, since sockets of peers hold few packets.
 #include "extensions/ros/ros_node.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The run as a node of ROS 2.
 #pragma once
 
 #include <cstdint>

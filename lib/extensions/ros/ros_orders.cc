@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Requests go through sessions of the protocol: one of the role WORLD, and one of the role ROBOT
+// for each robot on its way to a goal, so that holds, tokens and limits are those of every client.
+// Speeds (cmd_vel) hold a robot until they cease.
 #include "extensions/ros/ros_orders.h"
 
 #include <algorithm>

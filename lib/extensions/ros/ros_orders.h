@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Orders of clients to robots and to the world, whatever protocol brings them.
 #pragma once
 
 #include <chrono>

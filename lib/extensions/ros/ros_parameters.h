@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Values of the run as parameters of its node.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Services that nodes ask about parameters (rcl_interfaces).
 #pragma once
 
 #include <nlohmann/json.hpp>

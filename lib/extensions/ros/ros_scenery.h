@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What topics show of a room besides its movers and sensors.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Programs without an origin and pages of this machine need no token on a loopback port; all others
+// show it in the address. Browsers cannot set other headers of a WebSocket, hence the query.
 #include "extensions/ros/ros_site.h"
 
 #include <algorithm>

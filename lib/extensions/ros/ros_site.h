@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A port for topics over WebSockets, and the clients that may use it.
 #pragma once
 
 #include <cstdint>

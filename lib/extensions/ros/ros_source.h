@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Topics that other parts of a run add.
 #pragma once
 
 #include <memory>

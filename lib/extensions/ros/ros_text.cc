@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Walks a message in CDR by its definition and writes JSON or CBOR; and back. Messages of clients
+// are untrusted: a message that ends early, or a value that does not fit, is a FormatError with the
+// field's name. Integers up to 2^53 pass JSON exactly.
 #include "extensions/ros/ros_text.h"
 
 #include <algorithm>

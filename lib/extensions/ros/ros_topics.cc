@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The table of topics, and the frames of a run (REP 103: x forward, y left, z up; REP 105: map,
+// odom, base_link). /tf has the transforms that change, /tf_static the others. A robot alone also
+// has the names that programs for one robot expect.
 #include "extensions/ros/ros_topics.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The hash is sha256 of the type's description as JSON in the form of Python's json.dumps, which
+// rosidl uses; a blank more would be another type.
 #include "extensions/ros/ros_type_hash.h"
 
 #include <algorithm>

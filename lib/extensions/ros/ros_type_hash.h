@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Hashes of types, as REP 2016 demands.
 #pragma once
 
 #include <string>

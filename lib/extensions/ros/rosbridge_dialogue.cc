@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Source: RobotWebTools, "rosbridge v2.0 Protocol Specification" and rosbridge_suite, where they
+// differ. Requests of one client for one topic share a subscription: with the least interval, the
+// shortest queue and the best form among them.
 #include "extensions/ros/rosbridge_dialogue.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The protocol of rosbridge_suite, for roslib and its kin.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Source: tf2_web_republisher. Frames are looked up in the newest transforms; feedback holds those
+// that moved by more than a threshold since they were sent.
 #include "extensions/ros/transform_goals.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Poses of frames in a chosen one, for browsers without a library of tf.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Samples ways of people, and finds meetings: intervals of moments at which two people are within
+// kMeeting.
 #include "extensions/tracking/people_moments.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Loss as a weighted set cover: each element is served by single sensors, so that the search and
+// its bounds are those of any demand. Coasting is per sensor: an element is served if the same
+// sensor saw the person less than `coast` before, and the last sight of any set of sensors is one
+// sensor's.
 #include "extensions/tracking/track_demand.h"
 
 #include <algorithm>

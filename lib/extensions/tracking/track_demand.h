@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The demand of `arrange --objective track`: people that a tracker would lose.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The text of a certificate of guards: witnesses with all digits, and trees node by node.
+// Untrusted: counts are bounded.
 #include "extensions/proofs/gallery/guard_certificate.h"
 
 #include <charconv>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Covers of rows by candidates, as set covers (arrange/search): few rounds of local search, since
+// the next round sees what a cover misses. Views are star-shaped polygons; a candidate sees a row
+// unless it is farther from its view than rounding.
 #include "extensions/proofs/gallery/guard_search.h"
 
 #include <tbb/parallel_for.h>

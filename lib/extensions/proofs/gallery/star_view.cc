@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Views as wedges sorted by direction: a point is in the view if the wall of its wedge is behind
+// it. Directions are compared by pseudo-angles, margins widen the search to neighbouring wedges.
+// The floor is scaled to 2^20, so that epsilons of rays are fixed shares of it.
 #include "extensions/proofs/gallery/star_view.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An index of views by cells, so that a point is tested against the views near it alone. Marks are
+// convex hulls of parts of a view: supersets.
 #include "extensions/proofs/gallery/view_cells.h"
 
 #include <algorithm>

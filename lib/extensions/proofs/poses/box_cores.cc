@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What all poses of a box see, for the check: the intersection of what its corners see through the
+// same edges, less what lies beyond the range of any corner or outside of the field of view at any
+// heading. A subset is enough, so doubtful parts are left out.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds of tuples by sums, for the check: as SumBound, by other code. Any choice of cells gives a
+// valid bound, so the check need not make the choices of the search.
 #include "extensions/proofs/poses/box_sums.h"
 
 #include <algorithm>

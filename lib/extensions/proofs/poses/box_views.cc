@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// What some pose of a box sees, for the check: weak visibility of a rectangle through the edges of
+// a triangulation. Sides are moved outwards by more than rounding; a view of more than kMaxSteps
+// steps becomes all floor within reach, which is a superset.
 #include "extensions/proofs/poses/box_views.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The text of a certificate: the bound with all digits, then both trees in lines of 100 characters.
 #include "extensions/proofs/poses/certificate.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Checks a certificate: walks both trees, computes the view of each box that a tuple uses, and
+// bounds each tuple. Poses that no tuple holds must be out of the order of the tree, or blind; a
+// tree that leaves out others is refused. Boxes and tuples are independent, so that threads share
+// them; the verdict does not depend on their number.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Half-planes of boxes and rays, and clipping by them (I. E. Sutherland, G. W. Hodgman, Reentrant
+// polygon clipping, 1974).
 #include "extensions/proofs/poses/convex.h"
 
 #include <cmath>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Points that every pose of a box sees. The box is cut along triangles; from each part sight
+// expands through portals between the innermost lines of its corners (the opposite of weak
+// visibility). What all parts see is kept. Rounded down.
 #include "extensions/proofs/poses/inner_bound.h"
 
 #include <algorithm>

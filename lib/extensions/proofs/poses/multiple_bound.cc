@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Floor that at least t of n sensors see. Three bounds, of which the least counts: by single views
+// (the sum of all but the largest j over t - j), by cells (the t-th largest fat view), and by
+// prices of cores.
 #include "extensions/proofs/poses/multiple_bound.h"
 
 #include <algorithm>

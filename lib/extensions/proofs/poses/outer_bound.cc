@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Points that some pose of a box sees, by expansion from triangle to triangle: behind a portal lie
+// the points between the two extreme lines of sight, which turn about corners of portals and touch
+// the rectangle. Polygons around the range and the sector are circumscribed, cells rounded up: the
+// result is a superset in doubles as well.
 #include "extensions/proofs/poses/outer_bound.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The subdivision of all poses. A box is halved where its fat view may shrink most: along x, along
+// y or in its headings. Bounds of halves lower those of the boxes around them, so a box knows the
+// largest single view in it ever more closely.
 #include "extensions/proofs/poses/pose_boxes.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The floor as triangles and as areas in square cells, in two sizes. Areas in cells come from a
+// signed sweep: each edge of an outline adds the area on its right to the cells of its rows, and
+// sums along rows give the rest. O(cells on outlines + cells).
 #include <algorithm>
 #include <cmath>
 #include <map>

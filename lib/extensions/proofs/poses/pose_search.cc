@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Branch and bound over tuples of boxes, the worst bound first (A. H. Land, A. G. Doig, An
+// automatic method of solving discrete programming problems, 1960). Up to 256 tuples are split at a
+// time, in parallel; the batch, not the threads, decides the order. Equal sensors are kept in the
+// order of the tree, which leaves out n! - 1 of n! tuples. Layouts of centres of boxes that come
+// near to the best one are refined, since a better layout cuts off more than a better bound.
 #include "extensions/proofs/poses/pose_search.h"
 
 #include <tbb/parallel_for.h>

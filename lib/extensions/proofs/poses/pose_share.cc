@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Results of shards. Each names its search by a fingerprint, and the tuples that were dealt out by
+// another: parts of different searches, or shares of different tuples, never join.
 #include "extensions/proofs/poses/pose_share.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The bound by sums over sensors. The set A of cells that count as floor is found by a subgradient
+// method (N. Z. Shor, Minimization methods for non-differentiable functions, 1985): A holds the
+// cells that the mean views fill. Any A bounds, so steps and 16-bit means may be coarse.
 #include "extensions/proofs/poses/sum_bound.h"
 
 #include <tbb/parallel_for.h>

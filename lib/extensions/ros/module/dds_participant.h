@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface between lib/engine/server and the module that links Cyclone DDS.
+// Interface between lib/extensions/ros and the module that links Cyclone DDS.
 #pragma once
 
 #include <array>
