@@ -1,4 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Steps of fitToBodies():
+//
+// 1. Foreground: the densest half of a beam's ranges, the shortest interval that holds half of them
+//    (Rousseeuw and Leroy, Robust Regression, 1987), is the room; shorter beams by six standard
+//    deviations, 50 mm at least, are on a body.
+// 2. Discs: runs of neighbouring beams, four at least, are fitted by Gauss and Newton; a beam
+//    weighs less where it grazes the outline. A disc counts if its mean squared residual is below
+//    four variances.
+// 3. Moments: scans of several lasers within half a scan's time, 50 ms at most.
+// 4. Start: rigid motions of pairs of places (Procrustes in the plane) by RANSAC (Fischler and
+//    Bolles, 1981), 400 draws, 0.25 m; lasers join the first one in the order of agreement.
+// 5. Fit: ten rounds at most of grouping (within 0.15 m, then 0.08 m), Cauchy weights and Levenberg
+//    and Marquardt. The place of each leg is linear given the poses, and is put in by its minimum;
+//    so the search has three parameters for each laser but the first one, and one for the radius.
+//
+// The fit is refused where the least eigenvalue of the information allows 0.5 m or rad.
 #include "extensions/calibration/body_fit.h"
 
 #include <Eigen/Dense>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How fixed lasers stand to each other, by people or robots that pass them: no plan, no marks.
+//
+// Poses are in the frame of the layout, of which the first laser's pose is taken as true;
+// covariances are those of x and y along the axes of the room (metres) and of the heading
+// (radians), at the scatter of the residuals. Heights, tilts and rolls are not estimated. At most
+// 64 lasers. Random draws have a fixed seed: equal scans give equal poses.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Three ways, by the operands and the log: ENV LAYOUT (plan_fit.h), LAYOUT with --by-people or
+// --by-robots (body_fit.h), and a drive without operands (drive_fit.h). Cameras follow lasers, as
+// they are placed by the people that lasers see.
+//
+// Operands and outputs are checked before a room or layout is read, and the log follows. The
+// product is the layout with new poses, rounded to nine decimals, and a line of history for each
+// sensor with its covariance; sensors that the log does not show keep theirs, with a warning. A
+// laser that does not fit the room fails the run; a camera that cannot be placed does not.
 #include "extensions/calibration/calibrate.h"
 
 #include <algorithm>

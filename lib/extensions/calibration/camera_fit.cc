@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The start is a homography: a point of the level plane of the heads and its ray satisfy ray x (x
+// m1 + y m2 + m3) = 0, of which four points make a system of rank 8 (Hartley and Zisserman,
+// Multiple View Geometry, 2004, 4.1); the nearest rotation to (m1, m2, m1 x m2) comes by singular
+// values. RANSAC of 400 draws takes the pose with which most rays agree within 1.8 degrees, half of
+// them at least. Looking down, where people are not upright, the plane is that of the middle of the
+// body, 0.6 of the height.
+//
+// Then twelve rounds at most of pairing, Cauchy weights and Levenberg and Marquardt over turn,
+// shift and height, the latter with its prior. Residuals are column, top and bottom of an outline
+// by their spreads, which grow with its size, as limbs swing. From the fourth round on pictures
+// with several people count, each body with the person that the pose puts nearest.
 #include "extensions/calibration/camera_fit.h"
 
 #include <Eigen/Dense>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// After Censi et al. (IEEE Transactions on Robotics 29, 2013): the turn of a step is linear in
+// radius over axle of both wheels (least squares of two unknowns); with it, the translation is
+// linear in the axle, the laser's place and the unit vector of its heading. The first three are put
+// in by their minimum, which leaves a quadratic form of the unit vector: its minimum is the
+// eigenvector of the lesser eigenvalue. Of its two signs the one with an axle above 0 holds.
+//
+// The steps are arcs: speeds are taken as constant in a step. Covariances are the inverse of the
+// information at the scatter of the residuals, by central differences of 1e-6.
 #include "extensions/calibration/drive_fit.h"
 
 #include <Eigen/Dense>

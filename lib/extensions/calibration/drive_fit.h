@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Wheels, axle and laser of a differential drive, from one drive.
+//
+// The speeds of the wheels and the motion of the laser between two scans are enough: no marks, no
+// measured distance. The way has to turn and to run straight; a drive that does not determine a
+// parameter is refused.
 #pragma once
 
 #include <array>

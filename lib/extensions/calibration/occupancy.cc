@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Odds are sums of constant changes (kHit, kPassed) and are clamped: the order of the scans counts,
+// as in every clamped map, and equal logs give equal maps. Four bytes a cell while the map is made,
+// at most 1e9 cells.
 #include "extensions/calibration/occupancy.h"
 
 #include <algorithm>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rooms learned from the scans of a laser that moves: a map of occupied and free cells, then a
+// room.
+//
+// Poses are those of the log, the corrected ones before odometry, and are taken as true: scans are
+// not matched here, so that a log with drift gives double walls.
 #pragma once
 
 #include <span>

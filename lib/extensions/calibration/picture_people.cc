@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The background is a median a channel over pictures spread over the whole time. Colours are split
+// into brightness along the ray of the background colour and chromaticity across it; the threshold
+// is six robust standard deviations of all channels, at least 18 of 255. Bodies are connected over
+// gaps of one pixel, and count from 40 pixels or 1/5000 of the picture on.
 #include "extensions/calibration/picture_people.h"
 
 #include <algorithm>

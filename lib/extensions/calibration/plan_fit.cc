@@ -1,4 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Steps of fitToPlan():
+//
+// 1. Each beam's mean over the densest half of its ranges, with its variance; beams that return in
+//    half of the scans or fewer are left out.
+// 2. Starts: for a level laser a ring of 360 rays from each point of a grid over the free floor
+//    (0.35 m, at most some 20 000 points), compared at 180 headings, errors capped at 0.5 m; every
+//    local minimum over the heading is a start.
+// 3. The best starts are refined by Levenberg and Marquardt over simulated ranges, first with 120
+//    beams, then with all. Slopes are differences of 2 mm; a beam with one-sided differences that
+//    disagree passes an edge and does not count. Weights are those of Cauchy, 95 % efficient for
+//    normal errors.
+// 4. Eigenvectors of the information, in metres at the beams' ends, with a standard deviation above
+//    0.5 m are motions that the room does not determine: the search goes on across them, and along
+//    them the pose stays where it was.
+//
+// Errors of the plan show as `spread`, the scatter beyond that of the means; it widens the
+// covariance.
 #include "extensions/calibration/plan_fit.h"
 
 #include <Eigen/Dense>

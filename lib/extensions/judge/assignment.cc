@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rows are added one by one; each addition is a search for the shortest augmenting path with
+// reduced costs (Dijkstra over columns), and prices keep matched pairs tight: reduced costs of rows
+// that are in stay at or above 0, whatever the sign of the costs. Costs are the gains with a minus;
+// a tall matrix is transposed. The scan order of the columns and the preference for free ones
+// decide among equal sums, exactly as in SciPy.
 #include "extensions/judge/assignment.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The assignment of tracks to truths that all metrics of this folder share.
 #pragma once
 
 #include <cstddef>

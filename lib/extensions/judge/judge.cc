@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// `--tracks` with `--run`: errors of options and outputs come first, then those of the room, the
+// file of tracks and the record. All products are written before --require is checked, so that a
+// failed requirement (UnmetError) leaves the report that tells why. The cut-off of OSPA(2) and the
+// reach of a match are 1 m and 0.5 m.
 #include "extensions/judge/judge.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The options of coverage that judge a tracker by a recorded run. The record is read once, in the
+// order of time; MOTA and its kin are computed after it.
 #pragma once
 
 #include <memory>

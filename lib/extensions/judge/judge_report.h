@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A judged run as text, JSON, map, page and films. JSON and text are equal for equal input, byte by
+// byte; distances are in metres, rates in shares of 1 in JSON and in percent for people.
 #pragma once
 
 #include <cstddef>

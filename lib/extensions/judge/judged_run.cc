@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Frames are phase + k * interval, with the phase of the file's first row or of the run's
+// beginning. Truths between two recorded moments lie on a straight line, and only movers of both
+// moments are there; with simrun's usual moments of 0.1 s and people at 1.4 m/s that is some
+// millimetres off in a bend.
 #include "extensions/judge/judged_run.h"
 
 #include <algorithm>

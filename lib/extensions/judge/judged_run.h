@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A record of simrun beside a file of tracks: both on one row of frames, and what went wrong in
+// them.
+//
+// The reader goes once through the record; memory grows with the frames, of which there are at most
+// two million.
 #pragma once
 
 #include <cstddef>

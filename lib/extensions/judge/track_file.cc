@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The first line that is neither empty nor a comment decides: `{` is JSON, numbers alone are MOT,
+// else heads of CSV. MOT is the 3D format of MOTChallenge (Leal-Taixe et al. 2015): frame, id, box
+// of four, confidence, x, y, z; the box is not read. An MCAP is read twice, first for its topics.
 #include "extensions/judge/track_file.h"
 
 #include <algorithm>

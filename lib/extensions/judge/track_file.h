@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Files of trackers: CSV, JSON lines, MOT, MCAP. Metres in the frame of the room, seconds of the
+// run.
 #pragma once
 
 #include <cstddef>

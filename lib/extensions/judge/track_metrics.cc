@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// All four follow TrackEval (Luiten and Hoffhues, github.com/JonathonLuiten/TrackEval), down to its
+// epsilon and its treatment of empty frames, so that figures can be compared with published ones.
+//
+// CLEAR keeps pairs of the frame before by a gain of 1000, above any sum of similarities of usual
+// frames. HOTA matches once a frame, with gains weighted by how well the two belong together over
+// the whole run, and applies its 19 thresholds to that one matching. OSPA(2) is the assignment over
+// whole tracks; pairs that never meet gain 0, the cut-off in full.
 #include "extensions/judge/track_metrics.h"
 
 #include <algorithm>
