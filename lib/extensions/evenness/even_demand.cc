@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Element k of cell i has the index k * n + i for n cells, and needs k + 1 sensors. All elements of
+// a cell are served by the same sensors, so that a layout serves the first m of them for m sensors
+// that see it. With `share` of 1 or less the gains of a cell fall, which makes the sum submodular:
+// the greedy choice of K sensors gains at least 1 - 1/e of the best one (Nemhauser, Wolsey and
+// Fisher, 1978).
+//
+// Sight and field of view are apart: sightOf() casts the rays from a place once, and servedBy()
+// filters them for each heading. Level lasers have a region of their slice instead, and no sight to
+// share.
 #include "extensions/evenness/even_demand.h"
 
 #include <utility>

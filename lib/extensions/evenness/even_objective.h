@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The objective `even` of arrange, with --depth and --further. It counts sensors on one spot by
+// itself, and refuses --redundancy (UsageError).
 #pragma once
 
 #include <memory>

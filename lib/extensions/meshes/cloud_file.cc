@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Formats:
+//
+// - PCD 0.7 (Point Cloud Library, The PCD file format): lines of a header, then text, records, or
+//   one LZF stream with all values of a field side by side.
+// - PLY 1.0 (Turk, 1994): only the element `vertex`, with records of a fixed size.
+// - LAS 1.0 to 1.4 (ASPRS, LAS Specification 1.4 R15, 2.4): x, y and z are whole numbers at the
+//   begin of a record, scaled and shifted by doubles of the header at the bytes 131 and 155.
+//
+// Numbers in memory are read byte by byte, so that the byte order of the machine does not matter.
 #include "extensions/meshes/cloud_file.h"
 
 #include <algorithm>

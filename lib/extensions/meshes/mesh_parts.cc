@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The order of the tests matters: binary STL may begin with `solid`, so text needs `facet`, too,
+// and binary the length that its count of triangles demands; OBJ has no mark at all and comes last,
+// with a known first statement and one vertex.
+//
+// OBJ does not say which axis points up. Rooms with z upwards are lower than they are wide, which a
+// single piece of furniture often is, too: hence the least floor of 4 m2.
 #include "extensions/meshes/mesh_parts.h"
 
 #include <algorithm>

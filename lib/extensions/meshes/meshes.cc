@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The rows stand in the order in which they are tried: cuts into walls before meshes, contents
+// before suffixes. A file is handed to read-mesh as an open descriptor, so that the program needs
+// no right to open files; side files of a mesh are opened here, on its demand.
 #include "extensions/meshes/meshes.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pieces are straight, from one used moment to the next; in a bend of 0.5 m radius at 1.4 m/s the
+// chord is 4 mm shorter than the way. Steps above 12 m/s are jumps of a client, and make no piece.
 #include "extensions/presence/people_paths.h"
 
 #include <algorithm>

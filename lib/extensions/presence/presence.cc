@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Each person's pieces are read backwards: the time of the next detection is then known, and a
+// piece counts if that lies within kPresenceDelay. So a person counts as detected up to a second
+// before a sensor fires, which is the delay that an application sees, and never after it.
+//
+// Sensors are measured side by side, each into its own set; sums follow in their order, so that
+// figures do not depend on the number of threads.
 #include "extensions/presence/presence.h"
 
 #include <tbb/parallel_for.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// An element a piece, of the weight of its length. The rays from a place serve all headings there,
+// as in other demands. content() holds all pieces exactly: a result that was computed for other
+// ways is not taken for this one.
 #include "extensions/presence/presence_demand.h"
 
 #include <utility>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The ways of people as elements for arrange to serve.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Ways are drawn or read room by room, with the seed of the run; a record's file counts among the
+// files that the layout depends on.
 #include <optional>
 #include <string>
 #include <vector>

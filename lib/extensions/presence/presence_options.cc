@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// That a requirement has its --presence and a record its rooms is checked before coverage is
+// measured; a person that a requirement names is looked up after it.
 #include "extensions/presence/presence_options.h"
 
 #include <optional>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Wanderers are a simulation of the room at steps of 20 ms: the scene's own people and sensors are
+// left out, its robots stay. Places come from CrowdFloor, each storey of a building with its own
+// seed.
 #include "extensions/presence/presence_paths.h"
 
 #include <chrono>

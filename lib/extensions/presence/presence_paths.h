@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Which ways --presence counts: those of a record, or of people that wander by a seed. The same
+// seed, scene and version give the same ways.
 #pragma once
 
 #include <chrono>

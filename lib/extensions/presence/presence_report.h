@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Presence as a section of the report of coverage: JSON, text and page tell the same figures.
 #pragma once
 
 #include <string>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The last `=` parts the id from the share, as ids may hold one. Shares are compared with the
+// tolerance of exact figures of coverage, so that 95 % computed as 0.94999... is met.
 #include "extensions/presence/presence_requirement.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Requirements `presence:...` of --require: their syntax and their verdict.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Shares are weighted by the lengths of the ways; the longest gap is that within one storey, as a
+// person between two storeys is on no way.
 #include "extensions/presence/site_presence.h"
 
 #include <algorithm>

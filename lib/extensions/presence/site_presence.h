@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Presence of a building as the sum of its storeys.
 #pragma once
 
 #include <span>

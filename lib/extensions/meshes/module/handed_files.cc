@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// assimp sees a folder `/mesh/` that exists only here; a name below it becomes a demand to the
+// parent (base/confined.h), and a refusal a file that is not there.
 #include "extensions/meshes/module/handed_files.h"
 
 #include <assimp/MemoryIOWrapper.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Files for assimp from the parent process: assimp asks for a name, the parent decides whether to
+// open it, and hands over the descriptor.
 #pragma once
 
 #include <assimp/IOStream.hpp>

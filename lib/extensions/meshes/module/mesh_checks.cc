@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Findings of fuzzing assimp 5.2, each as a check before assimp sees the bytes: counts beyond the
+// file's size, headers that do not end, circles of nodes, depths and repetitions beyond
+// kMaxMeshNodeDepth and kMaxMeshNodes. XML and JSON are scanned once, in O(bytes); a valid file
+// passes unchanged.
 #include "extensions/meshes/module/mesh_import.h"
 
 #include <algorithm>

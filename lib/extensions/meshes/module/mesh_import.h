@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The confined program that reads a mesh: errors are std::runtime_error with a text for the user,
+// as this side knows no records.
 #pragma once
 
 #include <cstddef>

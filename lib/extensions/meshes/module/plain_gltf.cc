@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Accessors are read as doubles, normalised integers by glTF 2.0, 3.11, and written as one view
+// each; sparse ones are refused. Packed buffers are decoded by meshoptimizer; their sizes are those
+// of the file, and are charged before memory is allocated. Skins, cameras, animations and textures
+// are left out: a room has no use for them.
 #include "extensions/meshes/module/plain_gltf.h"
 
 #include <meshoptimizer.h>
