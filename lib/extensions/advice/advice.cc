@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// --suggest of coverage runs after coverage is measured, and never changes its verdict; at --time-
+// limit or a signal it reports the best so far, and says so.
 #include "extensions/advice/advice.h"
 
 #include <optional>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Changes come from the scene (suggestChanges()), and are ranked by the run: the share of the time
+// of all robots and people for which a sensor sees them, measured anew for each. They gain on the
+// floor first; a change that gains only where people went may be missing.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Storeys that share a scene and openings count once, on the lowest. Each storey is searched as a
+// room with the examples of all others, and each change is measured once in the whole building: a
+// sensor that looks through an opening gains there, too.
 #include "extensions/advice/site_suggestions.h"
 
 #include <algorithm>

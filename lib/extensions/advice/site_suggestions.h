@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Suggestions for buildings: searched storey by storey, and judged by the floor of all storeys.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The search is branch and bound over single changes: a trial has a bound of its gain (the rules
+// that may be mended, then floor by cells or by ExactGain::mostMore()), trials are measured from
+// the largest bound on, and the rest is cut once no bound exceeds the best gain. Among equal gains
+// the first trial in the order of the records wins, whatever the order of measuring.
+//
+// Together is greedy: the change that mends most, again and again, eight at most, and then each
+// change without which the others still meet all is left out. So it is minimal under removal, and
+// may be longer than the shortest list.
 #include "extensions/advice/suggestion.h"
 
 #include <algorithm>

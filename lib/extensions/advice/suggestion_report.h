@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Suggestions in words: the section of the report of coverage, with the command of each change.
+//
+// Gains are square metres of indoor floor, shares those of all of it. The commands quote ids for a
+// shell.
 #pragma once
 
 #include <string>

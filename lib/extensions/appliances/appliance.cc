@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A machine of four states: Start leads to Hold, Hold to Standby, and Standby back to Start with a
+// rest time. Times follow from the begin of the phase, not from steps: a run with other steps ends
+// phases at the same times. phaseAt() skips phases that ended between two steps.
+//
+// The catalogue holds typical figures, not those of one product; the source of each stands in its
+// row.
 #include "extensions/appliances/appliance.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Energy is power times the time of a step, in which no power changes: a phase that ends between
+// two steps is off by a step at most. A counter shows whole units of the plug's `count`. Phases end
+// by changes of records (ACT), which the run records and a replay repeats; a change that is refused
+// is asked for again.
 #include "extensions/appliances/meter_role.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Meters of a run: what plugs count, told to programs and as events.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The world tells of a collision only after it has stopped the robot: velocities are therefore kept
+// from the step before. The force is that of a spring without damping (half m v^2 = half k x^2),
+// rounded to 0.1 N; for a person it may be compared with the limits of ISO/TS 15066, Annex A, with
+// the stiffness of a part of the body from there.
+//
+// Two that meet are stopped one after the other, which the world reports twice: the first and
+// harder contact counts.
 #include "extensions/bumpers/bumper.h"
 
 #include <algorithm>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A term reads its subjects once a step into looks; clauses combine looks, and a trial for each
+// subject of the first condition (one for `any` and `total`) keeps only times: since when the state
+// holds, the longest spell, the sum. So memory does not grow with the run, but for open events and
+// for the last changes of each subject, which a failure shows.
+//
+// A state that holds at a step counts until the next one. Verdicts settle as soon as more steps
+// cannot change them, else at the end of the window or of the run.
 #include "extensions/expect/expect.h"
 
 #include <algorithm>

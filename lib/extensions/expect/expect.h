@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The judge of a run's expectations, step by step, while the run goes on.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sentences are parsed with the command line, files of them before the first step: an error in
+// either comes before the run. The report holds times of the run only, so that two runs of one seed
+// give equal bytes; paths of films are those of the record's folder.
 #include "extensions/expect/expectations.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// --expect and --expect-report of simrun: sentences, files of sentences, and the report.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A subset of YAML 1.2: a list of scalars or of maps with two known keys. All errors of a file are
+// found at once. The column of an error is that of the word in the sentence, unless the scalar
+// spans lines.
 #include "extensions/expect/rule_file.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A reader by recursive descent with two words of look-ahead. Numbers take units as in records,
+// together or apart (`0.4 m`). `and` binds closer than `or`; there are no brackets. An error names
+// the word that was wanted, with the nearest known one.
 #include "extensions/expect/sentence.h"
 
 #include <algorithm>

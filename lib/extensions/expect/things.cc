@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// States are read from the records at the start and after changes, and from events in between.
+// Energy is power times the time of a step, by the power before it. A state that the thing is never
+// told counts as 0, and is reported as untold, since a slip in its name would otherwise pass.
 #include "extensions/expect/things.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The mount is pan about the upright axis, then tilt about the turned one; sensors with `on` stand
+// in that frame.
 #include "extensions/heads/head.h"
 
 #include <functional>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A turn is linear from begin to end, and reaches the record as changes, one for all heads of a
+// room that are due, since a change builds the scene anew. A change takes effect later than it is
+// asked for: the role remembers the angles, and waits up to twenty periods for them before it gives
+// the turn up. So sensors on a head move in small jumps, and lag behind a little.
 #include "extensions/heads/head_role.h"
 
 #include <algorithm>

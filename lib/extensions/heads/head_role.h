@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Heads that turn by request of programs, with a speed.
 #pragma once
 
 #include <cstdint>

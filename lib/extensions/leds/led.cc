@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The glow is emission for pictures alone: an LED casts no light on the room, and lux meters do not
+// see it.
 #include "extensions/leds/led.h"
 
 #include <utility>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rules in one table: a tag of `access` opens, locks and unlocks; force breaks a locked door, which
+// then is open and locks no more. Answers are changes of records, with the reason if there is none.
+//
+// checkExit() opens all doors that the person may pass, builds the floor anew, and looks whether a
+// doorway of its part leads out: O(n log n), as a floor is.
 #include "extensions/locks/lock.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Robots force a door by kinetic energy, half m v^2 with the speed across the door before the step.
+// A door that a tag opened shuts once its time is over and no mover is within its doorway, 5 cm to
+// spare; a door that people opened meanwhile is theirs to shut. A tag shown twice in one step asks
+// once.
 #include "extensions/locks/lock_role.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Locks of a run: readers of tags, drives, and robots that force doors.
 #pragma once
 
 #include <cstdint>

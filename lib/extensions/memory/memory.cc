@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Touches come from the readings of tags, not from true places: noise of the sensor moves a touch,
+// which kHold smooths. Readings are taken once, by their number; a tag that is not located keeps
+// its stays for kHold. Contents are lines of at most 1000 bytes, and live as long as the run.
 #include "extensions/memory/memory.h"
 
 #include <algorithm>

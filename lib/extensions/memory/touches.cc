@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Volumes lie in a grid on the floor with the reach of the largest one: a look-up is O(volumes
+// near), and a huge volume makes all look-ups slower. A stay that ends is as long as its positions
+// were inside, without the hold.
 #include "extensions/memory/touches.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Balls and boxes; the boundary is inside. A box turns about the vertical only.
 #include "extensions/memory/volume.h"
 
 #include <cmath>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A mask of zones has the cells of the map that envc exports as `ros`, so that both match cell by
+// cell; those of coverage have the cells in which floor was measured.
 #include "extensions/nav2/masks.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Format: the parameters of CostmapFilterInfo (nav2_msgs) and the mask as a map of map_server with
+// `mode: scale`, occupied 1 and free 0 (nav2_map_server, map_io). A value v is the shade 255 -
+// round(2.55 v), which map_server turns back into v for all v from 0 to 100. Rows go from the top
+// of the map down, as in each PGM of a map.
 #include "extensions/nav2/nav2_mask.h"
 
 #include <cmath>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The shortest way is that of the room without people, found with the robot's own radius; in a
+// building, and for a robot that the scene lacks, it is --way or unknown, and so is SPL. All
+// figures are printed before --require is judged (UnmetError).
 #include "extensions/navigation/navigation.h"
 
 #include <algorithm>

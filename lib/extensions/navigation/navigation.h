@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The options of coverage that judge a robot's way to a goal by the record of a run.
 #pragma once
 
 #include <memory>

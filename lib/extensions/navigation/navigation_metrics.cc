@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One pass over the moments for each figure. Durations are those from a moment to the next one: the
+// last moment has none, and an intrusion at it counts, but lasts 0 s. Jerk is a third difference
+// over h^3 on steps of h, not a derivative of a smoothed way: noise of the record of 1 mm at h of
+// 0.1 s is 8 m/s^3 at most, which is why steps are no shorter.
 #include "extensions/navigation/navigation_metrics.h"
 
 #include <algorithm>

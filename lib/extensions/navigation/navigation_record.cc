@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rooms of a building run in lock step, so that moments are joined by their times in microseconds.
+// All moments are held in memory: O(moments * movers). A gap is from circle to circle, those of the
+// standing body, whatever posture a person has.
 #include "extensions/navigation/navigation_record.h"
 
 #include <algorithm>

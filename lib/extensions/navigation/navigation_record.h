@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A robot's run out of the records of one or more rooms, with the gaps to people.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One table names the figures for JSON, text and --require, and says for each whether more is
+// better.
 #include "extensions/navigation/navigation_report.h"
 
 #include <algorithm>

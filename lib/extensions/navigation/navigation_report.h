@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of navigation as text and JSON, and requirements on them.
 #pragma once
 
 #include <string>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A delay with mean m and deviation s is exp(N(ln m - v/2, v)) with v = ln(1 + s^2/m^2), which has
+// exactly this mean and deviation. Draws are keyed by seed, node and number: a message gets the
+// same delay and fate whatever other nodes send. Numbers go on over lost and dropped messages. A
+// lost one has used its node's line; a dropped one has not, unless it was dropped since too many
+// are on the way.
 #include "extensions/nodes/node_network.h"
 
 #include <algorithm>

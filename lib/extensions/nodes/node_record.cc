@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Clocks are linear: offset + (1 + skew) t, without drift or jumps. worldTime() is the first time
+// of the world in its own unit at which the clock shows at least the value, to half a microsecond,
+// so that AWAIT wakes no earlier than that.
 #include "extensions/nodes/node_record.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Messages are delivered after each step, in the order of arrival, node and number, whichever
+// program asks first. Text of a message is the rest of the line, blanks included. Unread messages
+// of a program that does not read are bounded (UnreadItems), and the program is told how many it
+// missed.
 #include "extensions/nodes/nodes.h"
 
 #include <algorithm>

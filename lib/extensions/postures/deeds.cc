@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Verbs are changes of the record (ACT), which the run records and a replay repeats. Places are
+// searched in fixed orders, rings of 0.1 m and 24 directions about the person, so that equal runs
+// choose equal places: the first free one, which is the nearest but for the steps of the search.
 #include "extensions/postures/deeds.h"
 
 #include <algorithm>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies are those of humanParts(), bent at fixed joints: no anthropometry beyond shares of the
+// height. An arm is an isosceles triangle of two halves with the elbow below the line from shoulder
+// to hand; its balls lie at most two thirds of their radius apart, so that the outline between two
+// of them dents by 6 % of the radius. Masses and strength do not limit a posture; things do, see
+// checkBody().
 #include "extensions/postures/posture.h"
 
 #include <algorithm>

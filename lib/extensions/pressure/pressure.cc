@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A contact is 64 points of equal weight on a sunflower's spiral (Vogel, A better way to construct
+// the sunflower head, 1979): a cell that covers a share of a disc feels that share to 5 % of the
+// weight. Weight is mass times the standard gravity, without the jolt of a step.
+//
+// A walking person's feet follow limbSwing(), by which sensors see the legs: the foot that goes
+// back carries. A person beside a seat counts as on it after `settle` seconds without motion, on
+// the nearest seat in reach.
 #include "extensions/pressure/pressure.h"
 
 #include <algorithm>

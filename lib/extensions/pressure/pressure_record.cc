@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// References are by id, in a building with or without the room before it, since loads follow robots
+// and people from storey to storey. Masses without a `load` are those of massOfPerson() and
+// massOfRobot().
 #include "extensions/pressure/pressure_record.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Readings are numbered periods of the sensor's rate since the start; noise is keyed by seed, id
+// and number, so that a reading does not depend on how often it is asked for. States `weight` are
+// told once they differ by a kilogram, which keeps noise out of the events.
 #include "extensions/pressure/pressure_role.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Floors and seats of a run that programs read and watch.
 #pragma once
 
 #include <cstdint>

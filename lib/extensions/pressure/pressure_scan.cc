@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The world stands at its start: no person has been still for `settle` seconds yet, so that a seat
+// feels people only if that is 0. The reading has the number 0, so that --noise gives the values of
+// a run with the same seed at its start.
 #include "extensions/pressure/pressure_scan.h"
 
 #include <array>

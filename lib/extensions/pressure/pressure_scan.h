@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// --floor of scan: one reading of each floor and seat, before a run.
 #pragma once
 
 #include <memory>

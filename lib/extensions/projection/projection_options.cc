@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Requirements are judged before products are written, as an unknown surface is an error of use; a
+// requirement that is not met (UnmetError) leaves all products.
 #include "extensions/projection/projection_options.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The option --projection of coverage: surfaces instead of floor, with `--require ID=M2`.
 #pragma once
 
 #include <memory>

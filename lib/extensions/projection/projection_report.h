@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces with their pictures as text, JSON and drawing. Areas in m2, densities in pixels a metre,
+// angles in degrees.
 #pragma once
 
 #include <string>

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The picture is a pinhole's, without distortion: pixel (f y / x, g z / x) for a point (x, y, z)
+// before the lens. Its derivative by two unit vectors of a plane is a 2 x 2 matrix (a, b; c, d);
+// its singular values are the densities: half the sum and difference of hypot(a + d, b - c) and
+// hypot(a - d, b + c).
+//
+// A pose that shows a point at (across, upright) of the picture follows in closed form from the
+// tilt, which the height of the direction decides alone (anglesTowards()). Cells with a bound, by
+// the densest corner of the picture, that is too small are only asked whether any pose lights them.
+// The largest rectangle is that of the histogram, O(cells) a pose; the search over poses is a grid
+// and then a descent to 0.1 degrees, a heuristic.
 #include "extensions/projection/projector_coverage.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles are joined by their plane, rounded to 1e-5 of the normal and 0.1 mm of the offset from
+// the middle of the room; two planes that differ by less are one surface, and one that falls on the
+// edge of rounding may become two. Cells are marked by their centres. The order is that of the
+// normals, from those that face down to those that face up.
 #include "extensions/projection/surfaces.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The surfaces of a room, flattened for pictures: each face with a frame and a grid of cells.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Free-space loss (Friis, A note on a simple transmission formula, 1946): 20 log10(range /
+// distance) dB above the weakest signal, less `loss` for each wall on the straight line. No
+// reflection, no interference, no loss by bodies; 6 dB halve the range.
 #include "extensions/radios/radio.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Messages arrive in the same step, as light does. The loss of a message is drawn from seed,
+// sender, receiver and the sender's count, so that a message has the same fate however many others
+// receive it. Meshes of a room are built at the first message after a change.
 #include "extensions/radios/radio_role.h"
 
 #include <array>

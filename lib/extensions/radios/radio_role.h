@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Radios of a run: messages between programs by the places of their radios.
 #pragma once
 
 #include <cstdint>

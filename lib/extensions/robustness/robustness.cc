@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// 100 mountings and 100 crowds, drawn from the seed: the standard error of a mean share of 100
+// samples is at most 5 percentage points, and usually far less. Failures are searched, not drawn.
+// All three add their section to the report of coverage; none of them changes its verdict.
 #include "extensions/robustness/robustness.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One table names the quantiles for text, page and JSON; a single sample has no quantiles. Shares
+// are rounded for people only.
 #include "extensions/robustness/robustness_report.h"
 
 #include <algorithm>

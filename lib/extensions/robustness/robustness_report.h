@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Mountings, failures and crowds as a section of the report of coverage.
 #pragma once
 
 #include <optional>

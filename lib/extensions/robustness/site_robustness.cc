@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Samples of a building perturb all storeys at once, each with its own seed, and measure the whole
+// building: sensors see through openings. A room alone takes the path of perturbMounting() and
+// measureCrowds(), which keep the sight of its walls from sample to sample.
 #include "extensions/robustness/site_robustness.h"
 
 #include <algorithm>
