@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A robot does not own its actions: the program deletes them, before or after the robot, and each
+// parts from the other. An action is of one robot at a time.
+//
+// fire() of the highest priority comes first; those below get the merged wish of all above, those
+// of equal priority the same one.
 #ifndef SIM_ARIA_ACTION_H
 #define SIM_ARIA_ACTION_H
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A wish is a value with a strength from 0 to 1; below MIN_STRENGTH it is no wish. The merged value
+// is the mean by strengths, of which lower priorities get the rest up to 1. Limits do not share:
+// the lowest of all holds.
 #ifndef SIM_ARIA_ACTION_DESIRED_H
 #define SIM_ARIA_ACTION_DESIRED_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Groups with the members and priorities of ARIA. A group owns the actions that it makes; destroy
+// it before its robot.
 #ifndef SIM_ARIA_ACTION_GROUPS_H
 #define SIM_ARIA_ACTION_GROUPS_H
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The target is seen by the line finder of the program, else by one of the robot's first laser. The
+// search turns by 10 degrees a cycle, for at most four turns; a target that is out of sight for 20
+// cycles fails the drive. Hold the robot's lock around getState() and getVertex().
 #ifndef SIM_ARIA_ACTION_TRIANGLE_H
 #define SIM_ARIA_ACTION_TRIANGLE_H
 

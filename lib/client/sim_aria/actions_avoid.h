@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Obstacles are what the robot's range devices see: a robot without any reads 5000 mm all around,
+// and drives on. A side that was chosen is kept until the way is free, so that corners do not hold
+// the robot.
 #ifndef SIM_ARIA_ACTIONS_AVOID_H
 #define SIM_ARIA_ACTIONS_AVOID_H
 

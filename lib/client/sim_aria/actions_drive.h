@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Goals are in the frame of the robot's pose, which moveTo() shifts and drift of odometry bends; a
+// distance counts by the wheels. An action that has arrived has no wish more: the robot keeps the
+// stop that it asked for last, unless another one drives.
 #ifndef SIM_ARIA_ACTIONS_DRIVE_H
 #define SIM_ARIA_ACTIONS_DRIVE_H
 

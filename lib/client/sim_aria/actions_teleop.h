@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Driving by program, keys and joystick. Keys are read in the robot's cycle, with its lock held;
+// they come from the terminal of the program, and from no other window.
 #ifndef SIM_ARIA_ACTIONS_TELEOP_H
 #define SIM_ARIA_ACTIONS_TELEOP_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A parameter points to a variable of the program, which must outlive it; its text is copied into
+// arrays of the program, and refused if it does not fit.
 #ifndef SIM_ARIA_ARGUMENT_H
 #define SIM_ARIA_ARGUMENT_H
 

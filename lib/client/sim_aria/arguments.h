@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The parser takes the words that it knows out of argc and argv themselves, so that the rest is the
+// program's. Texts that it returns live as long as argv, those of default arguments as long as the
+// parser.
 #ifndef SIM_ARIA_ARGUMENTS_H
 #define SIM_ARIA_ARGUMENTS_H
 

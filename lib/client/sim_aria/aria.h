@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Order of the end: functions of addExitCallback() by descending position, then robots stop and
+// disconnect (position -100), then the terminal is restored (-200). Signals take the same way, in a
+// thread of their own.
 #ifndef SIM_ARIA_ARIA_H
 #define SIM_ARIA_ARIA_H
 

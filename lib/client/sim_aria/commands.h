@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers are those of the Pioneer 3 Operations Manual (MobileRobots 2006), client commands.
 #ifndef SIM_ARIA_COMMANDS_H
 #define SIM_ARIA_COMMANDS_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Values take effect line by line: after an error that ends parseFile() those before it stay.
+// Options of the command line are taken after the whole file, at each parseFile().
 #ifndef SIM_ARIA_CONFIG_H
 #define SIM_ARIA_CONFIG_H
 

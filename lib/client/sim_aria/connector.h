@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Without -robotPort TCP is tried first and the serial line next, as ARIA does for a simulator and
+// a robot; here both lead to simrun.
 #ifndef SIM_ARIA_CONNECTOR_H
 #define SIM_ARIA_CONNECTOR_H
 

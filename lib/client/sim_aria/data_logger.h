@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Functors are called in the robot's cycle with its lock held, and must not sleep. A head with the
+// names precedes the rows at each start of the log.
 #ifndef SIM_ARIA_DATA_LOGGER_H
 #define SIM_ARIA_DATA_LOGGER_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Stored parameters are copies, also of references: later changes of the caller's variable do not
+// show. The object of a member function must outlive the functor. Calls take no lock.
 #ifndef SIM_ARIA_FUNCTOR_H
 #define SIM_ARIA_FUNCTOR_H
 

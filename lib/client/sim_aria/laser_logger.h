@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Format: LaserOdometryLog, version 3, of ARIA: poses in mm and degrees in the frame of the robot's
+// pose, points in the robot's frame. Each scan is flushed: a program that is killed loses at most
+// the last one.
 #ifndef SIM_ARIA_LASER_LOGGER_H
 #define SIM_ARIA_LASER_LOGGER_H
 

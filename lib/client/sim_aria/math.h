@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Random numbers are the linear congruence of Press et al. (Numerical Recipes, 7.1), equal in each
+// run of one thread; the lowest bits repeat early, so they are no source for statistics.
 #ifndef SIM_ARIA_MATH_H
 #define SIM_ARIA_MATH_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Layout: Pioneer 3 Operations Manual, packets of client and server. A packet grows as it is
+// written; its length byte is that of finalizePacket(), modulo 256.
 #ifndef SIM_ARIA_PACKET_H
 #define SIM_ARIA_PACKET_H
 

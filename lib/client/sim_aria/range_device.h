@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Points of sonars, lasers and bumpers for actions and programs. Directions and rectangles are in
+// the robot's frame of the last cycle, points in that of its pose. Hold lockDevice() around lists
+// of points: the robot's cycle changes them.
 #ifndef SIM_ARIA_RANGE_DEVICE_H
 #define SIM_ARIA_RANGE_DEVICE_H
 

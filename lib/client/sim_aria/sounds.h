@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Callbacks of a queue run in its thread, without its lock.
 #ifndef SIM_ARIA_SOUNDS_H
 #define SIM_ARIA_SOUNDS_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sockets of the system, for a program's own dialogues: their waits are wall time, and hold the
+// robot's cycle up if it makes them. Not safe for several threads at once.
 #ifndef SIM_ARIA_TCP_SOCKET_H
 #define SIM_ARIA_TCP_SOCKET_H
 

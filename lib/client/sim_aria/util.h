@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Times are simulated milliseconds since the program began, whole ones in ArTime; before a
+// connection they are wall time.
 #ifndef SIM_ARIA_UTIL_H
 #define SIM_ARIA_UTIL_H
 
