@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Help and versions are made from the declarations of the options, in a width of 79 columns,
+// counted in bytes.
 #include "cli/command_text.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Advice for options of other programs that users try by habit.
 #pragma once
 
 #include <string>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Jobs run one after another, or as a pipeline that takes in order, works in parallel and delivers
+// in order: products and messages come as if there was one thread. At most twice as many jobs as
+// threads are under way. A job that waits does not begin another, which could want its locks.
 #include "cli/job_loop.h"
 
 #include <tbb/global_control.h>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Requests on stdin: a decimal length and a line end, then fields that end in NUL: folder, files
+// for stdout and stderr, words of the command line. Answers on stdout: the status in decimal and a
+// line end. A job is a fork of a process that has read rooms and devices already; if threads exist,
+// which a fork would lose, the program begins anew. Children die with the server.
 #include "cli/job_server.h"
 
 #include <fcntl.h>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A room is kept with the identity, size and time of all files that it was read from; it is current
+// while these are unchanged. A file that changes within the clock's resolution, at the same size,
+// would be missed. Rooms that looked for a missing file are not kept, as it may appear.
 #include "cli/kept_rooms.h"
 
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Folders of Gazebo models from the environment, as gz-sim and Gazebo classic search them.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One extension does the task that its options ask for; two that are asked are an error, and so is
+// an option of a group that is not asked. Options of a tool that the task does not honour are
+// refused, instead of ignored.
 #include "cli/option_group.h"
 
 #include <algorithm>

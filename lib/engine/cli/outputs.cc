@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Products are written beside their target and renamed when they are complete (OutputFile), so that
+// a reader sees the old file or the new one. Rules of -MD follow GNU make's quoting, and refuse
+// names that make cannot read however they are quoted.
 #include "cli/outputs.h"
 
 #include <algorithm>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The frame of every tool: standard streams that exist, signals with their default action, errors
+// of libraries as exceptions. Statuses: 0 done, 1 failed, 2 usage, 3 a requirement is not met. An
+// exception becomes messages of one form, text or JSON; products that are not committed are removed
+// by OutputFile, and FileGuard keeps inputs from being overwritten. Memory that is out is told
+// without memory.
 #include "cli/run_tool.h"
 
 #include <fcntl.h>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A room is a site of one storey: tools read sites, and ask isOneRoom() only where names or reports
+// differ. Scenes of a site are shared and constant; a change makes new ones.
 #include "cli/site_operands.h"
 
 #include <algorithm>

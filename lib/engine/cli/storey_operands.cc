@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A layout of a building names sensors with their storey, STOREY/ID; one of a room does not. The
+// functions here turn one into the other, by the digest of the room where no storey is named, and
+// find the part of a building's record that belongs to a storey.
 #include "cli/storey_operands.h"
 
 #include <algorithm>

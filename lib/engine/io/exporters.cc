@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The table of formats: an extension adds rows, and a build without it knows their names for its
+// messages. A format writes from the scene, or from the records alone, which reads no other file.
 #include "io/exporters.h"
 
 #include <algorithm>

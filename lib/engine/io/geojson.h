@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// GeoJSON of plans and coverage, in metres: not the degrees that RFC 7946 asks for, which two
+// members say to the programs that know them. Rings follow the right-hand rule of section 3.1.6.
+// Equal shapes give equal bytes.
 #pragma once
 
 #include <string>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Records that importers write: lengths in whole micrometres, ids of plain letters, unique in the
+// file. A region with holes becomes one path with a seam to each hole, by the two nearest corners.
 #include "io/import_records.h"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of a file that an importer does not read are told only if a wall may be among them: at
+// least 0.5 m long, and within 0.5 m of a room that was found, or inside one.
 #include "io/unread.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers in JSON are rounded to significant digits (roundSignificant()), unknown ones are null;
+// members have one order. Schemas grow by members only, see the manual of formats.
 #include "report/coverage_report.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Values and proven bounds by the number of sensors; the area between them is what a search may
+// still gain. Axes have steps of 1, 2 or 5 times a power of ten.
 #include "report/curve_chart.h"
 
 #include <algorithm>

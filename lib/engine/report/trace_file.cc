@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// JSON lines, schema ispace-trace/1: a head, then a pose that was tried on each line. Errors name
+// line and column; a key that is there twice is one, as json::parse would take the last in silence.
 #include "report/trace_file.h"
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sockets are without delay, with a send buffer of 64 kB and probes that drop a silent peer after
+// some two minutes. A failed accept, as without descriptors, is tried again after 0.1 s.
 #include "server/acceptor.h"
 
 #include <boost/asio/ip/address.hpp>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One thread, made at the first job; a system that refuses it gets the jobs done in the caller's
+// thread. Work is done without locks, deliveries in the thread that collects. The destructor waits
+// for the job at work and drops the others.
 #include "server/background_worker.h"
 
 #include <iterator>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Requests that change the world become edits, are built in another thread against a copy, and take
+// effect between two steps. Alike requests of one client are joined into one change if each would
+// be valid or not whatever becomes of the others; if the joined change is refused, they are done
+// one by one. Error codes: 400 syntax or meaning, 404 no such record or file, 409 the world
+// refuses.
 #include "server/change_request.h"
 
 #include <algorithm>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One loop for all clients: each gets 64 requests or 0.2 ms before the next one's turn. Output is
+// bounded: scans are sent only when earlier output is gone, the newest one alone; a client that
+// does not read is cut off by its limits. Closing sends all output, then reads on for up to a
+// second, as a reset would cost the peer the last message.
 #include "server/client_connection.h"
 
 #include <boost/asio/post.hpp>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Addresses are compared as IPv6, those of IPv4 as mapped ones, with the bits of the range cut;
+// loopback is always allowed. Secrets are compared without an early end, in a time that depends on
+// the length given alone.
 #include "server/network.h"
 
 #include <boost/asio/ip/address.hpp>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Shared by all sessions, in the thread of the world: roles that are held, tokens, steps that
+// clients have asked for, texts of readings that several clients want. A hold has a number that is
+// never used again, so that a late release of a client does not free the next one's mover.
+//
+// Limits are token buckets: a rate and a burst. Wrong tokens count by address, and all strangers
+// share one bucket, so that many addresses get no more tries than one; 1024 addresses are
+// remembered.
 #include "server/server_state.h"
 
 #include <algorithm>

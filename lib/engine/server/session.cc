@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A request finds the row of its verb for the present role; the row checks token and number of
+// arguments. Requests that cannot be answered yet are held with the condition for which they wait,
+// and later ones queue behind them: answers come in the order of requests. Ends of motions, events
+// and scans are sent between, each as a whole.
 #include "server/session.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The option --mqtt of simrun: states of the room to and from a broker.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Messages of MCAP files (mcap.dev, specification 1), for logs of real rooms and for tracks. Chunks
+// are unpacked one at a time, with bounds on their size; a message's bytes are valid during the
+// call.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The option --web of simrun: the page of a run in a browser.
 #pragma once
 
 #include <memory>

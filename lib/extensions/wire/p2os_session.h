@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A Pioneer's controller as programs of the robot meet it: Pioneer 2 and 3 Operations Manuals,
+// packets and commands. Units are those of the wire, millimetres and degrees.
 #pragma once
 
 #include <chrono>

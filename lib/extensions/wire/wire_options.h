@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Options of simrun for the protocols of real devices.
 #pragma once
 
 #include <memory>

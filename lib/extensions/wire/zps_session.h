@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of text with positions of ultrasonic tags, as a positioning system would send them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The plan for the page of a run: drawn once as a picture, and its shapes turned back into metres,
+// rounded to a millimetre, so that page and files show the same drawing.
 #include "drawing/plan/plan_json.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Choices that need a second reading of a drawing: its unit by a known width (two rounds, as curves
+// are drawn to a millimetre), and layers with names of walls, if these alone give more floor, or
+// the house on a parcel. The second reading is bounded to drawings of 100 000 lines.
 #include "io/plan/drawing_source.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Depths of crowds of views for maps, without the memory of all depths.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// On a screen the width is given, and the plan is at most 1.4 times as high; on paper the scale is
+// a usual one, and the sheet the smallest of A4 and A3 on which the plan is largest. The legend
+// stands beside the plan if that leaves most of the page to it, else below.
 #include "report/map/map.h"
 
 #include <algorithm>

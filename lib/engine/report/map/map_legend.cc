@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Blocks of the legend tell shares with the figures of the report, exact ones if known; classes
+// without floor are left out, and the last class of redundancy is open.
 #include <algorithm>
 #include <cmath>
 #include <utility>

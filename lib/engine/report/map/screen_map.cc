@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One picture with all layers, of which the page of a report shows some; marks are there in two
+// sizes, since narrow screens show the picture at less than half its size.
 #include "report/map/screen_map.h"
 
 #include <algorithm>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A building on its way from the confined reader: native bytes of one machine, with counts before
+// lists. The receiver trusts no byte: counts are bounded by the bytes left, numbers are finite,
+// indices within their lists; else std::runtime_error.
 #include <cmath>
 #include <cstring>
 #include <stdexcept>

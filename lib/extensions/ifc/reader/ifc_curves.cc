@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lines, arcs, polylines, indexed and composite curves, and profiles of swept areas as polygons. A
+// curve that others use again is computed once and paid each time, so that a small file cannot ask
+// for much work. Curves in a loop are UnreadGeometry.
 #include "extensions/ifc/reader/ifc_curves.h"
 
 #include <algorithm>

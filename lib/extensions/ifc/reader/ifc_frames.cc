@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Units (IfcUnitAssignment), placements and transformations of IFC2X3 and IFC4, as right-handed
+// frames in metres: the z of the file holds, its x is turned to be square to it. Units of time,
+// mass and the like are not read. Placements in a loop are UnreadGeometry.
 #include "extensions/ifc/reader/ifc_frames.h"
 
 #include <algorithm>

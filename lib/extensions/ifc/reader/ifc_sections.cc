@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A section is the set of edges in which a level plane cuts faces, joined at ends within 10
+// micrometres; corners at the height count as below, so that closed surfaces give closed curves.
+// Curves that miss their begin by up to 2 cm are closed, others are sheets. Edges that are there
+// twice cancel out, as faces between parts do, unless all are, as of surfaces drawn from both
+// sides.
+//
+// Half-spaces clip curves (Sutherland and Hodgman, Reentrant polygon clipping, 1974). Boxes come
+// from the convex hull (Andrew's monotone chain, 1979).
 #include "extensions/ifc/reader/ifc_sections.h"
 
 #include <algorithm>

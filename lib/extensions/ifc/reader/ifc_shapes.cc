@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The body of a product is the best of its representations: Body, then tessellations, others,
+// FootPrint and Box. Mapped shapes are read once and copied, up to ten million corners that are
+// kept. Booleans: unions append, differences and half-spaces become cuts that sections apply later;
+// what is not understood leaves the solid whole and is counted.
 #include "extensions/ifc/reader/ifc_shapes.h"
 
 #include <algorithm>
