@@ -31,8 +31,10 @@ using ExtensionTask = std::function<void()>;
 /// line and kept until its task is done.
 ///
 ///     class Against : public OptionGroup {
-///         void declare(CommandLine& line) override { line.file("--against", "LOG", log_, "...",
-///         Enters::History); } bool isAsked() const override { return !log_.empty(); }
+///         void declare(CommandLine& line) override {
+///             line.file("--against", "LOG", log_, "...", Enters::History);
+///         }
+///         bool isAsked() const override { return !log_.empty(); }
 ///         std::span<const std::string_view> honours() const override { return kHonoured; }
 ///         void take(const CommandLine& line) override { select_ = line.valuesOf("--select"); }
 ///         void run(const TaskInput& input) override;
@@ -52,6 +54,7 @@ class OptionGroup {
     /// Checks the options with each other, and takes what the tool's own say
     /// (CommandLine::valuesOf). \throws UsageError
     virtual void take(const CommandLine& line) = 0;
+    /// Does the task. \throws as a tool does; UnmetError after all products are written
     virtual void run(const TaskInput& input) = 0;
 };
 

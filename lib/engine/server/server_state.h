@@ -212,6 +212,7 @@ class ServerState {
         std::string id;  ///< "": the only one
         const World* world = nullptr;
     };
+    /// Returns all worlds of the run, also through the state of one of them.
     [[nodiscard]] std::vector<ServedWorld> worlds() const;
     /// A robot, person or sensor, by its id in the world of a state.
     struct ServedEntity {
@@ -266,6 +267,7 @@ class ServerState {
     /// True if clients may have updates since the last call: a change or a mark.
     [[nodiscard]] bool hasUpdates();
 
+    /// Steps that clients have asked for, in the order of their requests.
     [[nodiscard]] StepQueue& steps() { return steps_; }
     /// The common limit on pauses.
     [[nodiscard]] TokenBucket& pauses() { return pauses_; }
@@ -294,6 +296,7 @@ class ServerState {
         change_worker_.emplace(wake);
         stopped_ = std::move(stopped);
     }
+    /// Waits for the jobs at work; those that have not begun are dropped.
     void stopBackground() {
         capture_worker_.reset();
         change_worker_.reset();

@@ -105,9 +105,18 @@ class Adviser {
 
     /// Returns the private floor of an environment; valid until that of two others is requested.
     camerarules::PrivateFloor& privateFloorOf(const Environment& environment);
+    /// Returns the move of one piece of furniture, by 0.5, 1 or 2 m in steps of 45 degrees, that
+    /// mends most, then gains most. Tries the six pieces that may hide most floor; moves that add
+    /// findings are left out.
     std::optional<Suggestion> furniture(const MeasuredState& now);
+    /// Returns the replacement of a device by the cheapest one of its kind in the scene that saves
+    /// most, at a loss of kNegligible of the floor or less. A sensor without `cost` counts as 1.
     std::optional<Suggestion> replacement(const MeasuredState& now);
+    /// Returns the removal of the sensor that adds least floor of its own, if that is kNegligible
+    /// or less and the rules miss no more without it.
     std::optional<Suggestion> removal(const MeasuredState& now);
+    /// Returns changes that meet all together, at most eight; empty if the greedy choice finds no
+    /// such list. \param first moves() of this state
     std::optional<Suggestion> together(const MeasuredState& now, std::vector<Suggestion> first);
 
   private:

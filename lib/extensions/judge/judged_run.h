@@ -83,9 +83,10 @@ struct ClassFigures {
     double distance = 0;  ///< sum over the matches, metres
 };
 
-/// Finds the losses: intervals without a match while the truth is there, and switches. A
-/// loss is an entry if the truth was never matched before; unseen if no sensor sees its place at
-/// the begin, if that is known; a crossing if another truth is within 1 m of it there.
+/// Finds the losses: intervals without a match while the truth is there, and switches. The first
+/// reason that holds counts: unseen, if it is known that no sensor sees the place at the begin;
+/// entry, if the truth was never matched before; crossing, if another truth is within kNearTruths
+/// of it there. In the order of their begins, then of truths.
 std::vector<Loss> lossesOf(const JudgedRun& run, const ClearMot& clear);
 
 /// Sorts the truths of all frames into classes: `classify` returns an index below that of `names`,

@@ -45,6 +45,7 @@ class WebDialogue {
     virtual void stepped() = 0;
     /// Continues pending requests between steps.
     virtual void proceed() = 0;
+    /// True while a request waits for its answer, and while one waits until the world may change.
     [[nodiscard]] virtual bool waiting() const = 0;
     [[nodiscard]] virtual bool waitsToChange() const = 0;
     /// Returns and removes the next message to send; empty if there is none.
@@ -96,6 +97,7 @@ class WebSite {
     [[nodiscard]] virtual bool isHost(std::string_view host) const = 0;
     /// Returns the file at a path; null if there is none.
     [[nodiscard]] virtual const WebFile* file(std::string_view /*path*/) const { return nullptr; }
+    /// Opens a dialogue, or rejects the request: an unknown path, origin or token, or too many.
     virtual WebAdmission open(const WebRequest& request) = 0;
     /// Call after each step or change of the world, before the dialogues.
     virtual void stepped() {}

@@ -18,8 +18,9 @@
 
 namespace ispace::worlds {
 
-/// Shapes of a world, in their own frames: centre in the origin, z along a cylinder and out of a
-/// polyline's plane.
+// Shapes of a world, in their own frames: centre in the origin, z along a cylinder and out of a
+// polyline's plane. Metres; scales of meshes are as the world writes them.
+
 /// A door or window in the middle of a wall.
 struct WorldOpening {
     double width = 0, sill = 0, height = 0;
@@ -34,10 +35,12 @@ struct WorldBox {
 struct WorldCylinder {
     double radius = 0, length = 0;
 };
+/// A prism over a polygon in its plane.
 struct WorldPolyline {
     Polygon points;
     double height = 0;  ///< from the origin up
 };
+/// A mesh in another file, which is read later.
 struct WorldMesh {
     std::string uri;
     std::optional<std::string> file;  ///< relative to the world's folder; empty if it is missing
@@ -45,6 +48,7 @@ struct WorldMesh {
     bool is_part = false;  ///< a submesh: the rest of the file does not count
 };
 
+/// A shape and its pose: joints, includes and nested models are applied.
 struct WorldShape {
     std::variant<WorldBox, WorldCylinder, WorldPolyline, WorldMesh> shape;
     Eigen::Isometry3d world_from_shape;

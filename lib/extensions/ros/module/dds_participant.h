@@ -56,15 +56,17 @@ class DdsParticipant {
     /// Ends all threads of DDS.
     virtual ~DdsParticipant() = default;
 
-    /// \throws std::runtime_error
+    /// Return the number of the new writer or reader, an end. \throws std::runtime_error
     virtual int addWriter(const DdsTopic& topic) = 0;
     virtual int addReader(const DdsTopic& topic) = 0;
     virtual void remove(int end) = 0;
+    /// Return the identity on the network, of the participant or of an end.
     [[nodiscard]] virtual DdsGuid guid() const = 0;
     [[nodiscard]] virtual DdsGuid guid(int end) const = 0;
 
     /// True once after readers have come or gone, or messages have arrived.
     virtual bool changed() = 0;
+    /// True while a peer's reader is matched with the writer: else its messages need not be made.
     [[nodiscard]] virtual bool isRead(int writer) const = 0;
     /// Sends a message, or drops it if slow readers leave no room.
     virtual void write(int writer, std::string_view message) = 0;
