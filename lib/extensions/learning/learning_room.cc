@@ -531,6 +531,8 @@ RoomGoal LearningRoom::goalInZone(const LearningTask& task) const {
     return goal;
 }
 
+/// Draws cells without repetition and keeps those with a start in the task's range of distances;
+/// if none has, the least distance is halved, six attempts in all.
 void LearningRoom::findGoals(const LearningTask& task, std::size_t count) {
     if (robot_cells_.empty())
         throw FormatError(Diagnostic{"", 0, 0, "no floor of the room is free for the robots"});
@@ -542,7 +544,7 @@ void LearningRoom::findGoals(const LearningTask& task, std::size_t count) {
         return;
     }
     if (task.kind == LearningTask::Kind::Patrol || task.kind == LearningTask::Kind::Follow) return;
-    // Spread by a stride that has no divisor in common with the number of cells.
+    // A fixed seed: a room has the same goals in each batch.
     EpisodeRandom random(1);
     std::vector<std::uint32_t> drawn = robot_cells_;
     for (std::size_t i = 0; i + 1 < drawn.size(); ++i)

@@ -65,6 +65,8 @@ bool LearningWorld::isFreeAt(Point2 p, double radius, double apart) const {
     return true;
 }
 
+/// All draws of an episode follow from the world's seed and the episode's number: other worlds and
+/// the threads that step them do not matter.
 void LearningWorld::start(const LearningSetting& setting) {
     random_ = EpisodeRandom(mixedBits(mixedBits(seed_) + episode_++));
     room_ = random_.below(setting.rooms.size());
@@ -213,6 +215,8 @@ void LearningWorld::chooseGoal(const LearningSetting& setting, std::size_t robot
     robots_[robot].is_measured = false;
 }
 
+/// First half of a step: moves each mover as if alone among the walls. All steer by the poses at
+/// the step's begin, so the order does not matter yet.
 void LearningWorld::propose(const LearningSetting& setting, LearningScratch& scratch) {
     const LearningRoom& room = *in_;
     const std::size_t count = motions_.size();
@@ -306,6 +310,8 @@ void LearningWorld::propose(const LearningSetting& setting, LearningScratch& scr
     }
 }
 
+/// Second half: takes the moves in World's order and cancels those that hit a wall or another
+/// mover, moved already or not yet. So a run of simrun settles alike.
 void LearningWorld::settle(LearningScratch& scratch) {
     const LearningRoom& room = *in_;
     const std::size_t count = motions_.size();
@@ -417,6 +423,8 @@ void LearningWorld::patrol(const LearningSetting& setting) {
     }
 }
 
+/// Casts against the room's lines first and then shortens by the bodies nearby; noise is keyed by
+/// seed, laser and step, as in a run of simrun.
 void LearningWorld::observe(const LearningSetting& setting, std::size_t robot, std::span<float> out,
                             LearningScratch& scratch) {
     const LearningRoom& room = *in_;
@@ -539,6 +547,8 @@ std::array<double, kTaskSignals> LearningWorld::signalsOf(const LearningSetting&
     return signals;
 }
 
+/// Any robot's end ends the world: the others are truncated, not terminated. Goals are drawn anew
+/// only after all robots are judged by the old ones.
 void LearningWorld::judge(const LearningSetting& setting) {
     const LearningTask& task = setting.task;
     std::vector<std::size_t> arrived;
@@ -594,6 +604,8 @@ std::size_t LearningWorld::bytes() const {
     return sum;
 }
 
+/// Drawn starts are whole millimetres and tenths of a degree and the seed has 31 bits, so that the
+/// files read as the numbers of this episode.
 LearningWorld::Episode LearningWorld::episode(const LearningSetting& setting) const {
     const LearningRoom& room = *in_;
     const Scene& scene = room.scene();

@@ -46,6 +46,8 @@ double GuardFloor::blurAt(const GuardCone& cone, Point2 end, Point2 p) const {
     return kBlur * extent_ * (1 + length(p - cone.apex) / length(end - cone.apex));
 }
 
+/// Triangles around a point, with a margin for rounding, are seen whole; through each of their
+/// edges the lines of sight go on. Points are joined in their order, whatever the threads.
 GuardCones GuardFloor::conesFrom(std::span<const Point2> points, bool must_be_on) const {
     const std::size_t count = floor_.triangles().size();
     if (points.size() > kMaxStarts / std::max<std::size_t>(count, 1))

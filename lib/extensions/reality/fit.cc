@@ -413,6 +413,9 @@ Record sensorRecord(const SensorFit& fit, const LoggedRun& run, const Scene& sce
 
 }  // namespace
 
+/// Most likely ramp between two angles of incidence, by whole degrees: all pairs of even ones, then
+/// the neighbours of the best. It must beat a flat share by log(samples), as BIC counts two
+/// parameters. The error is binomial and holds for a given ramp.
 DropoutFit fitDropout(std::span<const BeamSample> samples) {
     IncidenceCounts counts;
     double lost = 0;
@@ -456,6 +459,8 @@ DropoutFit fitDropout(std::span<const BeamSample> samples) {
     return fit;
 }
 
+/// The held-out likelihood is of odd scans under a fit to the even ones, but with the terms that
+/// the fit to all scans has chosen.
 std::vector<SensorFit> fitSensors(const LoggedRun& run) {
     std::vector<SensorFit> fits;
     for (std::size_t sensor = 0; sensor < run.sensors.size(); ++sensor) {
@@ -490,6 +495,8 @@ std::vector<SensorFit> fitSensors(const LoggedRun& run) {
     return fits;
 }
 
+/// Squared errors of turn and way are regressed on their causes and a constant, which is the
+/// variance of the corrected poses themselves.
 std::optional<OdometryFit> fitOdometry(const Log& log) {
     const std::vector<OdometryMotion> motions = motionsOf(log);
     constexpr std::size_t kLeast = 20;
@@ -534,6 +541,8 @@ std::optional<OdometryFit> fitOdometry(const Log& log) {
     return fit;
 }
 
+/// Pairs each burst with the receivers that should hear it in the scene without people, 5 cm short
+/// of their limit; such a receiver that is not in the log has missed it.
 std::vector<UltrasoundFit> fitUltrasound(const Log& log, const Scene& scene, RayScenes& worlds) {
     std::vector<Sensor> receivers = sensorsOf<Receiver>(scene);
     const std::vector<Sensor> tags = sensorsOf<Tag>(scene);

@@ -180,6 +180,8 @@ MapCells cellsWhere(const MapCells& like, const std::vector<int>& values, Test t
 
 }  // namespace
 
+/// An opening of the set: erosion to the disc's centres, of these the piece nearest to each point,
+/// dilation back. Both steps compare exact squared distances of cell centres with one limit.
 MapCells reachedByDisc(const MapCells& cells, double radius, const std::vector<CellIndex>& from) {
     // Half a cell: the edge of the cells outside lies that much before their centres.
     const double reach = (radius + 0.5) * (radius + 0.5);

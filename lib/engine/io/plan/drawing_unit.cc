@@ -147,6 +147,8 @@ std::span<const LengthUnit> usualUnits() {
     return units;
 }
 
+/// Scores: a usual size is 1, another plan's size 0.5; walls add up to 1 and doors up to 2, each as
+/// a share of the unit that has most of them. A tie keeps the order of the candidates.
 std::vector<UnitEvidence> rankedUnits(const std::function<LayerSorter::Sorted(double)>& read,
                                       Budget work, const LengthUnit* stated,
                                       std::span<const LengthUnit> candidates) {

@@ -498,6 +498,8 @@ PlanOutcome writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter,
     });
 }
 
+/// Turns between the axes, each time at the widest gap along it. The longer part stays if the gap
+/// is five times its extent and it has nine tenths of all length; two turns without a cut end it.
 void leaveOutStrays(std::vector<PlanShape>& shapes, ImportRecords* out) {
     constexpr double kFar = 5;      // of the gap to strays, as a share of the plan's extent
     constexpr double kBulk = 0.9;   // of the length of all lines, which the plan has

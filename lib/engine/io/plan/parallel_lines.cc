@@ -73,6 +73,8 @@ ParallelLines::ParallelLines(std::span<const Segment2> lines) : lines_(lines) {
     }
 }
 
+/// Directions are in classes of kStep, so only the line's own class and its neighbours can hold a
+/// parallel; the search is as deep as the nearest side so far, at first the thickest wall.
 std::optional<double> ParallelLines::otherSide(const Segment2& line, double scale, Budget& work) {
     const double thin = kThinWall / scale, least = kShortestSide / scale;
     const Point2 a = line.a, b = line.b;

@@ -233,6 +233,8 @@ void PlanFaces::takeFaces(std::span<const Segment2> doors) {
     makeGroups(doors);
 }
 
+/// Unites the faces on both sides of each door (union-find, the smaller index is the root), then
+/// sorts groups and the faces of each by falling area; equal areas keep the order of the faces.
 void PlanFaces::makeGroups(std::span<const Segment2> doors) {
     std::vector<std::size_t> group_of(faces_.size());
     std::iota(group_of.begin(), group_of.end(), std::size_t{0});

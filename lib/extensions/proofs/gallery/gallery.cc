@@ -114,6 +114,8 @@ void GallerySolver::addFirstWitnesses() {
     }
 }
 
+/// What a guard anywhere sees of the witnesses is part of one of the largest sets that a point
+/// sees; so the least number of these sets that cover all witnesses bounds the guards from below.
 void GallerySolver::raiseBound() {
     const auto known = gallery::largestWitnessSets(floor_, witnesses_, progress_);
     if (!known) {

@@ -256,6 +256,9 @@ std::array<std::uint32_t, 2> GuardProof::pairOf(const std::vector<GuardRows>& se
     return best;
 }
 
+/// A leaf packs weights on witnesses so that no set holds more than a unit, rounded down to whole
+/// parts: the guards are at least the total, rounded up. A node branches on a pair of witnesses:
+/// either one guard sees both, which is a new row of these sets, or none does, which splits them.
 void GuardProof::prove(std::vector<GuardRows> sets, std::size_t rows, int depth) {
     constexpr std::int64_t kUnit = GuardCertificate::kUnit;
     reduceSets(sets, rows);

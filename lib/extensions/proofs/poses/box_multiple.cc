@@ -68,6 +68,10 @@ double ofAreas(std::span<const BoxViews::Placed> sensors, std::size_t times) {
 
 }  // namespace
 
+/// Floor that `times` of n sensors see, at least `times - k` of any n - k of them see: each subset
+/// bounds it in a cell by the sum of its views over that share. Prices, any weights, move area
+/// between the sensors' proven areas and the cells: bound = sum of price * area + sum over cells of
+/// min over subsets of (weight - price) * view, with the core for the view where that is negative.
 double BoxViews::sharedBy(std::span<const Placed> sensors, std::size_t times, double enough) const {
     thread_local Spread spread;           // memory is reused
     thread_local std::size_t likely = 0;  // prices that sufficed last time

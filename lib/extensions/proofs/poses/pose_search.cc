@@ -57,6 +57,8 @@ PoseSearcher::Children PoseSearcher::childrenOf(const Tuple& tuple, std::size_t 
     return children;
 }
 
+/// Halves the boxes of one sensor where it may see most, until none can see 0.2 % more than a pose
+/// that was tried or the boxes are as many as allowed: tuples start with tight single views.
 void PoseSearcher::searchSingle() {
     constexpr std::size_t kBatch = 64;
     constexpr double kClose = 0.002;
@@ -106,6 +108,8 @@ void PoseSearcher::lowerBySums(std::vector<Children>& made) {
         for (Tuple& tuple : children.tuples) tuple.bound = tuples[next++].bound;
 }
 
+/// `closed_` bounds all tuples that were dropped, too small to be halved or not above the cutoff;
+/// the larger of it and of the queue's top bounds what any poses of this share see.
 void PoseSearcher::searchTuples() {
     constexpr std::size_t kBatch = 256;
     constexpr double kBetter = 1e-3, kNear = 0.97;  // of centres, to be worth refining
