@@ -188,6 +188,7 @@ Ink scaled(const Ink& ink, double scale) {
 
 }  // namespace
 
+/// Appends the other's lists and shifts the indices of its shapes behind those that are here.
 void Picture::inset(const Picture& other, Point2 corner, double scale) {
     const DisplayList& from = other.list_;
     const auto at = [&](Point2 p) {

@@ -275,6 +275,8 @@ bool namesOtherRoom(std::string_view word) {
 
 }  // namespace
 
+/// In a building the movers and their sensors stay as the run began: of a mover the pose can be
+/// set, by a request of its own, and of a person the states.
 RoomRequest roomRequest(const Worlds& worlds, std::span<const std::string_view> words) {
     if (!worlds.areCoupled())
         return {.room = 0,

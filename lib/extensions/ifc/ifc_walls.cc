@@ -127,6 +127,9 @@ WholeWalls::WholeWalls(const Environment& environment) {
     });
 }
 
+/// Thin lines around a face that is mostly solid are one wall with the face as its section:
+/// openings become its holes, its height is that of the lines, and the lines are no walls of their
+/// own.
 std::vector<WallPart> WholeWalls::outsideSolids(std::vector<WallPart> parts,
                                                 const Environment& environment,
                                                 const WeldedLines& welded) {

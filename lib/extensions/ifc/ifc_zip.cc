@@ -81,6 +81,8 @@ bool isIfcZip(std::string_view bytes) {
            bytes.end();
 }
 
+/// The first entry that ends in .ifc. Its stated size is paid from the work before memory is taken,
+/// and no more than that size is unpacked: a zip bomb costs a message.
 std::string unzippedIfc(std::string_view bytes, const std::string& operand, Budget& work) {
     ZipBytes file{bytes};
     zlib_filefunc64_def memory{openBytes, readBytes,  writeBytes,   tellBytes,

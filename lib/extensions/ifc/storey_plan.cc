@@ -418,6 +418,8 @@ std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
     return static_cast<std::uint64_t>(first - building.storeys.begin());
 }
 
+/// A column that touches a wall is a part of it, any other stands free. The walls' top is that of
+/// most inner walls, of all if none is inside.
 StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) {
     storey = storeyOfSections(building, storey);
     StoreyWalls walls;

@@ -83,6 +83,8 @@ void FoxgloveDialogue::greet(const std::string& title, const std::string& sessio
     sendText(json.take());
 }
 
+/// Sends only what is new or gone since the last call, and an empty list as long as there was no
+/// channel at all. Topics to which clients send are no channels until one has sent.
 void FoxgloveDialogue::advertise() {
     const RosFeed::Entries& entries = feed().entries();
     JsonWriter gone;

@@ -127,6 +127,8 @@ bool TrackDemand::isServedBy(const Sensor& sensor) const {
            !sensor.person;
 }
 
+/// True if the line from the sensor to the axis of the person meets another of the same moment. A
+/// body is a circle as wide as it is at the line's height where the line passes its axis.
 bool TrackDemand::isHidden(std::size_t place, Point3 from, double height) const {
     const PersonMoment& target = moments_.places[place];
     const Point2 foot = from.onFloor();
@@ -145,6 +147,8 @@ bool TrackDemand::isHidden(std::size_t place, Point3 from, double height) const 
     });
 }
 
+/// Places with a free line to their axis, whatever way the sensor is turned: one sight serves all
+/// headings of a position. In the sensor's slice for a laser, at the task's height for others.
 std::vector<std::uint8_t> TrackDemand::sightOf(const Sensor& sensor,
                                                const RayScenes& worlds) const {
     const Point3 origin = sensor.pose.position;

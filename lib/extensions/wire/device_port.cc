@@ -206,6 +206,8 @@ bool DeviceHost::mayDrive(std::string_view robot) {
 
 bool DeviceHost::isPaused() const { return state_->rooms().states.front()->simulation().paused(); }
 
+/// A client repeats its request until the change is done. The result of the one asked last is kept
+/// for that, as long as no other change came between.
 DeviceHost::Change DeviceHost::change(std::span<const std::string> assignments) {
     // Device protocols cannot carry a token.
     if (!state_->mayChange() || state_->rooms().worlds->areCoupled() ||

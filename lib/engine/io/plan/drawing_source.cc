@@ -158,6 +158,8 @@ void warnOfWallNames(const std::map<std::string, std::size_t>& names, const Plan
     }
 }
 
+/// A second import replaces the first, report and rooms included, only if the first has found
+/// better layers; they are always judged by the largest room, so `inside` does not change them.
 Document importWithNamedWalls(
     const ImportOptions& options,
     const std::function<Document(const ImportOptions&, std::vector<std::string>*)>& import) {
