@@ -21,11 +21,13 @@ struct Options {
 /// A dialogue in the Simulator TCP Protocol, version 1 (simrun(1)): requests, answers, and
 /// unsolicited messages, which are stored until they are requested.
 ///
-/// One thread at a time may use it. Open a connection for each robot and sensor.
+/// One thread at a time may use it. Open a connection for each robot and sensor, and take a role
+/// soon: the server closes one that asks for none within a minute (408).
 ///
 /// Unsolicited messages wait in queues of 10 000 ends and events and 64 scans; beyond these the
-/// oldest is dropped. After a Timeout the connection remains usable: an answer that comes late is
-/// recognised and dropped. After ConnectionError and ProtocolError it is not.
+/// oldest is dropped. After the Timeout of an answer the connection remains usable: one that comes
+/// late is recognised and dropped. It is not after a Timeout while sending ("takes no requests"),
+/// which may leave a part of a line, nor after ConnectionError and ProtocolError.
 ///
 ///     Connection server("127.0.0.1:7001");
 ///     server.ask("WORLD");

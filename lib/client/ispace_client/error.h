@@ -20,7 +20,8 @@ class ConnectionError : public Error {
     explicit ConnectionError(const std::string& what) : Error(what) {}
 };
 
-/// The answer has not arrived in time. The connection remains usable: a late answer is dropped.
+/// The answer has not arrived in time; the server may still do what was asked. The connection
+/// remains usable: a late answer is dropped.
 class Timeout : public Error {
   public:
     explicit Timeout(const std::string& what) : Error(what) {}
@@ -36,8 +37,10 @@ class ProtocolError : public Error {
 class Refused : public Error {
   public:
     Refused(int code, const std::string& text) : Error(text), code_(code) {}
-    /// 400 syntax, 401 token, 403 not allowed, 404 unknown name, 405 not in this role, 408 no role
-    /// in time, 409 held by another client, 413 too long, 416 out of range, 429 too many.
+    /// 400 syntax, 401 token, 403 not allowed in this run, 404 unknown name or one that is gone,
+    /// 405 not in this role or not now, 408 no role in time, 409 held by another client or
+    /// impossible as the world is, 413 too long, 416 out of range, 429 too many. The server closes
+    /// the connection after 408 and 413, and after 429 for clients or unread data.
     int code() const { return code_; }
 
   private:

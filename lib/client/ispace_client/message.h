@@ -17,8 +17,9 @@
 namespace ispace {
 namespace client {
 
-/// Parses a number, independent of the locale; "-" is infinity, which means no return.
-/// \throws ProtocolError for other texts
+/// Parses a number, independent of the locale; "-" is infinity, which means no return. Short ones,
+/// as in scans, cost no stream.
+/// \throws ProtocolError for other texts, "inf" and "nan" among them
 inline double numberOf(const std::string& text) {
     if (text == "-") return std::numeric_limits<double>::infinity();
     // Up to 15 digits, as the server writes measured values, one division rounds correctly.
@@ -54,7 +55,8 @@ inline std::size_t countOf(const std::string& text) {
     return static_cast<std::size_t>(value);
 }
 
-/// Returns the shortest text that converts back to the same double, independent of the locale.
+/// Returns a text that converts back to the same double, independent of the locale: of at least six
+/// digits the fewest that do. \throws Error for infinity and NaN, which no request takes
 inline std::string textOf(double value) {
     if (!std::isfinite(value)) throw Error("a request has a number that is not finite");
     for (int digits = 6;; ++digits) {
@@ -92,7 +94,8 @@ struct Pose3 {
     double x = 0, y = 0, z = 0, heading = 0, tilt = 0, roll = 0;
 };
 
-/// The `key=value` pairs of a line, in its order.
+/// The `key=value` pairs of a line, in its order. A look-up goes through them all; of a key that
+/// comes twice it finds the first. Keys that a newer server adds are here as well.
 class Fields {
   public:
     void add(const std::string& key, const std::string& value) {

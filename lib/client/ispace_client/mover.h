@@ -54,7 +54,8 @@ struct Odometry {
     double rotspeed = 0;  ///< degrees/s
 };
 
-/// A motion with an end, started by forward(), left(), path() and similar functions.
+/// A motion with an end, started by forward(), left(), path() and similar functions, which return
+/// as soon as it runs.
 struct Motion {
     int id = 0;
     double length = 0;  ///< of a path, m
@@ -84,7 +85,10 @@ struct GoOptions {
 
 /// A robot or person driven by this client. Only one client can drive it; others are refused (409).
 /// When the object is destroyed, or its program dies, the robot brakes and is released. A new
-/// motion replaces the current one.
+/// motion replaces the current one, which then ends as replaced.
+///
+/// Motions throw Refused: 416 for a value out of range or a person that sits or lies, 409 in a lift
+/// or on stairs, 404 once the mover has been removed from the world.
 class Mover {
   public:
     Mover(const Mover&) = delete;

@@ -42,7 +42,8 @@ struct Reading {
         pose.heading = v[3], pose.tilt = v[4], pose.roll = v[5];
         return pose;
     }
-    /// Converts the data from little-endian float32.
+    /// Converts the data from little-endian float32, on a host of any byte order; drops a rest of
+    /// less than four bytes.
     std::vector<float> floats() const {
         std::vector<float> values(data.size() / 4);
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -55,7 +56,8 @@ struct Reading {
     std::uint32_t byte(std::size_t i) const { return static_cast<unsigned char>(data[i]); }
 };
 
-/// One scan of a laser.
+/// One scan of a laser, in its own frame. It is of one moment, unless the laser spins: then `time`
+/// is that of the beam which is measured first.
 struct Scan : Reading {
     double angle_min = 0, angle_max = 0,
            step = 0;            ///< degrees, counter-clockwise from straight ahead
@@ -153,7 +155,8 @@ struct Cloud : Reading {
     }
 };
 
-/// Times of flight from each tag to an ultrasonic receiver.
+/// Times of flight from each tag to an ultrasonic receiver. The speed of sound is
+/// 331.3 + 0.606 T m/s at T degrees Celsius, see scan(1).
 struct Burst : Reading {
     std::vector<std::string> tags;
     std::vector<double> times_of_flight;  ///< s, in the order of tags; infinity: not heard
@@ -173,9 +176,10 @@ struct Burst : Reading {
 
 /// Position of a tag computed from the receivers.
 struct Fix : Reading {
-    int heard = 0;                             ///< receivers that heard it
-    bool solved = false;                       ///< false: too few receivers; the figures are 0
-    double x = 0, y = 0, z = 0, residual = 0;  ///< m
+    int heard = 0;        ///< receivers that heard it
+    bool solved = false;  ///< false: too few receivers; the figures are 0
+    /// Position in the room, and the root mean square of measured less computed distances, m.
+    double x = 0, y = 0, z = 0, residual = 0;
 
     static Fix from(const Message& message) {
         Fix fix;
@@ -192,7 +196,7 @@ struct Fix : Reading {
     }
 };
 
-/// Movers on a mat.
+/// People with a leg on a mat, and robots with their body above it.
 struct Load : Reading {
     std::vector<std::string> on;  ///< ids
 
@@ -204,7 +208,8 @@ struct Load : Reading {
     }
 };
 
-/// Movers that have passed a gate since the start of the run.
+/// Movers that have passed a gate since the start of the run, along its heading (in) or against it.
+/// A mover counts when its centre crosses the line; one lower than the beam does not.
 struct Passages : Reading {
     long in = 0, out = 0;
     std::string last;     ///< id of the last one; empty: no passage yet

@@ -23,7 +23,8 @@ struct Bumper {
     bool hit = false;
 };
 
-/// A robot (role ROBOT).
+/// A robot (role ROBOT). Its constructor throws Refused: 404 for an unknown id, 409 while another
+/// client drives it.
 class Robot : public Mover {
   public:
     Robot(const Address& address, const std::string& id, const Options& options = Options())

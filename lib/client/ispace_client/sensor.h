@@ -10,7 +10,12 @@
 namespace ispace {
 namespace client {
 
-/// A sensor of the room or on a robot; shared by any number of clients. T is its reading.
+/// A sensor of the room or on a robot; shared by any number of clients. T is its reading. The
+/// constructor throws as Connection does, and Refused (404) for an unknown id; a reading that lacks
+/// what T holds is a ProtocolError.
+///
+/// Frames of cameras and rangers are computed on request, and scan() blocks until they are. In real
+/// time the world goes on meanwhile and skips frames; all other clocks wait for the frame.
 ///
 ///     Camera camera("127.0.0.1:7001", "c1");
 ///     camera.stream();
@@ -49,7 +54,7 @@ class SensorOf {
     }
 
     /// Selects frames as bytes after their line, or as text in it. The library reads both; bytes
-    /// are several times as fast.
+    /// are several times as fast, and the ranges of a laser's text are whole millimetres.
     void binary(bool on) { connection_.ask(on ? "BINARY on" : "BINARY off"); }
     /// Cameras: png, jpeg, rgb. Rangers: depth32, depth16, cloud, png.
     void format(const std::string& name) { connection_.ask("FORMAT " + name); }

@@ -14,8 +14,8 @@ namespace client {
 
 /// An event in the world.
 struct Event {
-    /// collision, stall, enter, leave, mat, gate, seen, lost, state, activity, mark, change;
-    /// missed: number (n=) of events dropped because the client did not read them
+    /// collision, stall, unreached, enter, leave, mat, gate, seen, lost, state, activity, mark,
+    /// change; missed: number (n=) of events dropped because the client did not read them
     std::string kind;
     double time = 0;  ///< simulated seconds
     Fields fields;    ///< id=, into=, zone= and further fields of its kind
@@ -32,7 +32,8 @@ struct Lift {
 };
 
 /// The simulated world and its clock (role WORLD). Any number of clients may have the role; each
-/// may change the world, if the server permits.
+/// may change the world, if the server permits. A change is done when its function returns, as a
+/// whole or, with Refused, not at all: 409 if it is impossible, 403 in runs that take none.
 ///
 ///     World world("127.0.0.1:7001");
 ///     world.pause();
