@@ -22,8 +22,8 @@ struct NodeMessage {
 
 /// A node of a sensor network (role NODE): reads its sensors, talks to other nodes over a line with
 /// delays and losses, and has its own clock, by which all times are. One client has the role of a
-/// node. In lockstep runs repeat exactly, whatever the speed of the programs: the world does not
-/// pass the time for which a node waits.
+/// node. In lockstep runs of programs that do the same repeat exactly, whatever their speed: the
+/// world does not pass the time for which a node waits.
 ///
 ///     Node node("127.0.0.1:7001", "n1");
 ///     for (double t = 0.1;; t += 0.1) {

@@ -165,8 +165,9 @@ class World {
     /// \return its id
     std::string add(const std::string& record) { return change("ADD " + record).text("id"); }
     void remove(const std::string& id) { change("DELETE " + id); }
-    /// Loads another room. The server opens the files, which must lie in the folder of its scene;
-    /// `layout` may be empty. Robots of the old room are gone: their clients' calls are refused.
+    /// Loads another room. The server opens the files, which must lie in the folder that clients
+    /// may read; `layout` may be empty. Clients keep robots, people and sensors whose ids the new
+    /// room has; calls about others are refused.
     void load(const std::string& environment, const std::string& layout = "") {
         const std::string files = environment + (layout.empty() ? "" : " " + layout);
         warning_ = connection_.ask("LOAD " + files, kLoadTimeout).fields.text("warning", "");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The target is seen by the line finder of the program, else by one of the robot's first laser. The
-// search turns by 10 degrees a cycle, for at most four turns; a target that is out of sight for 20
-// cycles fails the drive. Hold the robot's lock around getState() and getVertex().
+// search asks for 10 degrees more in each cycle, in at most 144 cycles; a target that is out of
+// sight for more than 20 cycles fails the drive. Hold the robot's lock around getState() and
+// getVertex().
 #ifndef SIM_ARIA_ACTION_TRIANGLE_H
 #define SIM_ARIA_ACTION_TRIANGLE_H
 
@@ -95,7 +96,7 @@ class ArActionTriangleDriveTo : public ArAction {
         myDesired.setVel(0);
         myDesired.setDeltaHeading(0);
     }
-    /// Turns once about itself.
+    /// Turns on the spot.
     ArActionDesired* search() {
         myState = STATE_SEARCHING;
         mySearched += kAngleTolerance;

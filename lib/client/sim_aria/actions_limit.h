@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Limits hold whatever their priority, since the lowest one counts (ArActionDesired). They look at
 // current readings in a strip before or behind the robot's centre, by its pose in this cycle: at
-// 100 ms a robot of 750 mm/s has moved 75 mm before a limit takes effect.
+// 100 ms a robot of 750 mm/s moves up to 75 mm before a limit takes effect.
 #ifndef SIM_ARIA_ACTIONS_LIMIT_H
 #define SIM_ARIA_ACTIONS_LIMIT_H
 

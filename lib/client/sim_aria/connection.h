@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A connection finds simrun and adopts its clock; the dialogue of a robot is opened by ArRobot.
-// openSimple() and open() wait up to six seconds for an answer.
+// openSimple() and open() wait up to six seconds for each of a few answers.
 #ifndef SIM_ARIA_CONNECTION_H
 #define SIM_ARIA_CONNECTION_H
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // WGS 84: half axis 6378137 m, squared eccentricity 6.69437999014e-3. To the map in closed form,
-// over earth-fixed coordinates; back by eight rounds of a fixed point, exact to rounding but at the
-// poles, where the altitude is not defined by it.
+// over earth-fixed coordinates; back by eight rounds of a fixed point, exact to rounding but near
+// the poles, where the altitude loses digits.
 #ifndef SIM_ARIA_GPS_COORDS_H
 #define SIM_ARIA_GPS_COORDS_H
 

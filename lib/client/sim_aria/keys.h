@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keys are bytes and the sequences of VT220 and xterm, read without waiting; a sequence that
-// arrives in two parts counts as Escape. The terminal is restored at the end of the process, also
-// by the signals of Aria::init().
+// arrives in two parts counts as Escape. The terminal is restored by the destructor, by
+// Aria::exit() and by the signals of Aria::init().
 #ifndef SIM_ARIA_KEYS_H
 #define SIM_ARIA_KEYS_H
 

@@ -12,8 +12,8 @@ namespace sim_aria {
 /// Direct motion: stores separate goals of translation and rotation, and computes the speeds of
 /// each cycle. Speeds are whole mm/s and degrees/s, as in a Pioneer's commands; like its firmware,
 /// it reaches distances and headings with speeds that decrease towards the goal: the speed at a
-/// distance s is the least of the maximum, sqrt(decel s) and s / 0.3 s, so it neither overshoots by
-/// the delay of a cycle nor creeps. Ends within 0.5 mm or degrees.
+/// distance s is the least of the maximum, of sqrt(decel s), which brakes at half of the
+/// deceleration since poses arrive a cycle late, and of s / 0.3 s. It is 0 below 0.5 mm or degrees.
 class Motion {
   public:
     double top_vel = 750, top_rot_vel = 100;  ///< of the robot: bounds of the next two

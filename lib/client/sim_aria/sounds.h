@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Callbacks of a queue run in its thread, without its lock.
+// Callbacks of a queue run without its lock: those that play, and that tell that it is empty, in
+// its thread, those that interrupt, and that tell of a first item, in the caller's.
 #ifndef SIM_ARIA_SOUNDS_H
 #define SIM_ARIA_SOUNDS_H
 

@@ -141,7 +141,7 @@ class CommandLine {
     /// else the short one.
     [[nodiscard]] std::vector<std::string> names() const;
     /// Returns "arrange room.glb --sensor urg-04lx:1 --strategy wall" for the options given, in the
-    /// order of declaration, quoted for the shell.
+    /// order of declaration (those of ordered() together, as they came), quoted for the shell.
     [[nodiscard]] std::string historyLine(const std::vector<std::string>& operands) const;
     /// Returns the words of a command line with the same result: the tool, the options that enter
     /// its history as they were given, and the operands.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Warnings and notes go through tell() and warn(), which a batch catches; worker threads beyond the
-// first one are those that grantedThreads() grants. Results do not depend on -j: reductions run in
-// a fixed order.
+// first one are those that grantedThreads() grants.
 #include "cli/common_options.h"
 
 #include <tbb/global_control.h>

@@ -70,7 +70,7 @@ auto ofOption(const std::string& name, const Read& read) {
 
 /// Limits the number of worker threads of the process to `threads` from now on (0: the least of the
 /// cores of the affinity mask, cpuQuota() and SLURM_CPUS_PER_TASK), and to the number that the
-/// system grants. 1 starts no thread. Results do not depend on it.
+/// system grants. 1 starts no thread. Without a limit of time results do not depend on it.
 void limitThreads(int threads);
 
 /// Returns the folder of devices and scenes: `../share/ispace` beside the folder of the running

@@ -2,8 +2,8 @@
 // Private to lib/engine/cli: the loop that works off many jobs in one process. Lists (cli/batch.h)
 // and sweeps (cli/job_server.h) differ in their source of jobs and in the form of results alone.
 //
-// It is a pipeline of TBB: jobs are taken in order, run in parallel and delivered in order, so the
-// output of a list does not depend on the number of threads.
+// With all threads it is a pipeline of TBB: jobs are taken in order, run in parallel and delivered
+// in order, so the output of a list does not depend on the number of threads.
 #pragma once
 
 #include <functional>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Operands are told apart by content, never by suffix: an environment, a layout, or a building of
-// which the rules choose a storey. Order: stdin is read once at most, each operand becomes a
-// document, an environment that is not given is that of the layout's record, and the digest that
-// the layout names is compared with it. All findings of a file come in one FormatError; a file
-// outside the layout's folder is not quoted in messages, as its content may be another user's.
+// Operands are told apart by content: an environment, a layout, or a building of which the rules
+// choose a storey. Order: stdin is read once at most, each operand becomes a document, an
+// environment that is not given is that of the layout's record, and the digest that the layout
+// names is compared with it. All findings of a file come in one FormatError; a file outside the
+// layout's folder is not quoted in messages, as its content may be another user's.
 #include "cli/operands.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads the files that a command names: ENV and LAYOUT of a room, or any number of inputs as one.
 //
-// Operands are told apart by content, not by name, so their order is free; "-" is stdin, which is
-// read once. A layout knows the digest of its environment: another one is an error or a warning, as
+// ENV and LAYOUT are told apart by content, so their order is free; "-" is stdin, which is read
+// once. A layout knows the digest of its environment: another one is an error or a warning, as
 // SceneRules says. Files that records name are read by the rules of `includes`, with bounded work
 // (Budget), since inputs are untrusted. Errors are UsageError for the command, FormatError with
 // file, line and column for data, std::system_error for the system.

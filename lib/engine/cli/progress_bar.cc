@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drawing is bounded to ten times a second by one atomic time, so that advance() costs threads an
-// addition and a comparison. The time left is by the mean rate so far.
+// addition, a look at the clock and a comparison. The time left is by the mean rate so far.
 #include "cli/progress_bar.h"
 
 #include <unistd.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clients name files of one folder and no others: names are resolved first, links included, and the
-// kernel enforces the same by a fence around the reader (InputSandbox). Messages do not tell
-// whether a file exists elsewhere, and quote no file that is not a scene.
+// Clients name files of one folder and no others: names are resolved first, links included, and
+// readers enforce the same by a fence (InputSandbox, in this process). Messages do not tell whether
+// a file exists elsewhere, and quote no file that is not a scene.
 #include "cli/scene_folder.h"
 
 #include <algorithm>

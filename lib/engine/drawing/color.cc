@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Palettes: series by Okabe and Ito (Color universal design, 2008), told apart by all kinds of
-// colour vision; turbo by the polynomials of Mikhailov (Google, 2019). Lightness weighs the
-// components as Rec. 709 does, without their gamma.
+// colour vision; turbo (A. Mikhailov, Google, 2019) by the polynomials of R. Du. Lightness weighs
+// the components as Rec. 709 does, without their gamma.
 #include "drawing/color.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads calibrations of cameras as ROS (camera_calibration_parsers, sensor_msgs/CameraInfo) and
-// OpenCV (FileStorage) write them. Scaling to another size of the picture keeps the centres of
-// pixels: (cx + 0.5) s - 0.5, since both count pixels from the middle of the first one.
-// Coefficients k1 k2 p1 p2 k3 are those of OpenCV's plumb_bob.
+// OpenCV (FileStorage) write them. Scaling to another size of the picture keeps its edges: (cx +
+// 0.5) s - 0.5, since both count pixels from the middle of the first one. Coefficients of plumb_bob
+// are in OpenCV's order, k1 k2 p1 p2 k3.
 #include "io/calibration.h"
 
 #include <yaml-cpp/yaml.h>

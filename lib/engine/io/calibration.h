@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Calibrations of cameras from files of ROS and OpenCV. Untrusted: at most 1 MiB, 1000 keys a map
-// and 14 coefficients. Angles, skew and more coefficients than a lens of ours has are errors, never
-// ignored, since a picture with a wrong lens looks right.
+// Calibrations of cameras from files of ROS and OpenCV. Untrusted: a file has at most 1 MiB, 1000
+// keys a map and 14 coefficients. Skew and more coefficients than a lens of ours has are errors,
+// never ignored, since a picture with a wrong lens looks right.
 #pragma once
 
 #include <string>

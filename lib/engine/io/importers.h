@@ -4,10 +4,9 @@
 // those of extensions. The writers are in exporters.h.
 //
 // Inputs are untrusted. A reader bounds its work by a Budget in units that do not depend on the
-// machine, follows names of other files only as `includes` allows, and fails with FormatError that
-// names file and line; it never guesses in silence: choices are notes, doubts warnings. The same
-// bytes and options give the same records, in the order of the file, with coordinates in whole
-// micrometres for plans.
+// machine, and fails with FormatError that names file and line; it never guesses in silence:
+// choices are notes, doubts warnings. The same files and options give the same records, with
+// coordinates in whole micrometres for plans.
 //
 //     ImportOptions options;
 //     options.units = "mm";

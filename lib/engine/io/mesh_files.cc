@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds the reader of a mesh file, and reads each file once for all records that name it. A file
-// that failed fails again with the same error, without being opened.
+// that failed fails again with the same error, without being read.
 #include "io/mesh_files.h"
 
 #include <unistd.h>

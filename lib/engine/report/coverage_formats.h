@@ -2,7 +2,8 @@
 // Coverage in the formats of other programs: CSV, GeoJSON (RFC 7946), glTF, maps of ROS, NumPy
 // arrays (NEP 1). A format is a row of a table, to which extensions add theirs. Formats of cells
 // hold the figures by cells, formats of outlines the exact ones where these are known. Equal input
-// gives equal bytes; metres, headings in degrees, rows from the lowest y on.
+// gives equal bytes; metres, headings in degrees; rows of tables and arrays from the lowest y on,
+// those of pictures from the highest.
 //
 //     const CoverageFormat& csv = coverageFormat("csv");
 //     writeAll("seen.csv", csv.write({.scene = scene, .coverage = coverage}).product);

@@ -2,10 +2,10 @@
 // lib/engine/report: coverage and runs as text, tables and JSON, maps, pages and pictures for
 // people.
 //
-// Text rounds for reading, JSON does not: its doubles are the shortest that read back the same. An
-// unknown metric is null in JSON and left out of text. Tables show figures by cells, exact ones and
-// the difference side by side, so that a reader sees the error of the cells. Equal reports give
-// equal bytes.
+// Text rounds for reading, JSON to twelve significant digits (roundSignificant()). An unknown
+// metric is null in JSON and left out of text. Tables show figures by cells, exact ones and the
+// difference side by side, so that a reader sees the error of the cells. Equal reports give equal
+// bytes.
 //
 //     std::cout << coverageText(coverage.report);
 //     writeAll("report.json", coverageJson(coverage.report));

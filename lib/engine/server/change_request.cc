@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests that change the world become edits, are built in another thread against a copy, and take
-// effect between two steps. Alike requests of one client are joined into one change if each would
-// be valid or not whatever becomes of the others; if the joined change is refused, they are done
-// one by one. Error codes: 400 syntax or meaning, 404 no such record or file, 409 the world
-// refuses.
+// Requests that change the world become edits, are built apart from it (in another thread, but for
+// the rooms of a building), and take effect between two steps. Alike requests of one client are
+// joined into one change: SET if each would be valid or not whatever becomes of the others, ADD
+// without names of files. If the joined change is refused, they are done one by one. For the codes
+// of errors see change_request.h.
 #include "server/change_request.h"
 
 #include <algorithm>

@@ -4,7 +4,8 @@
 //
 // A change is all or none: a request that fails leaves the world as it was. Codes of errors: 400
 // for a request that is wrong by itself, 403 for one that the run forbids, 404 for an unknown
-// record or file, 409 for records that contradict each other or exceed memory.
+// record, 409 for a file that cannot be loaded, and for records that contradict each other or
+// exceed memory.
 #pragma once
 
 #include <functional>

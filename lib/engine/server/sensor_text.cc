@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lines and bytes of readings, ispace-protocol(7). Ranges have three decimals, rounded half to
-// even, and bytes are little-endian float32 on every machine; equal readings give equal bytes.
+// even; floats and integers in bytes are little-endian on every machine.
 #include "server/session_sensors.h"
 
 #include <algorithm>

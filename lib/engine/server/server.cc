@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The loop of a run: clients, changes, the world, sleep. The world steps unless a background job, a
-// role or a reader holds it; otherwise only its record is written. The loop sleeps in Asio until
-// the earliest of: the next step, the turn of a silent client, the end of a wait for a reader.
+// The loop of a run: clients, changes, the world, sleep. While a background job, a role or a reader
+// holds the world, only its record is written. The loop sleeps in Asio until a handler has run, or
+// the earlier of the next step and Data::nextTurn().
 #include "server/server.h"
 
 #include <boost/asio/post.hpp>

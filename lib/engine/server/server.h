@@ -8,9 +8,9 @@
 // the world waits for them: the sequence of steps and readings then does not depend on the speed of
 // the machine. With a real clock the world runs on.
 //
-// Clients are untrusted. Lines, replies, pictures under way and connections are bounded by
-// ServerLimits; a client that exceeds a limit is answered by an error line or disconnected, and the
-// others go on. Transport is not encrypted.
+// Clients are untrusted. Lines, replies and connections are bounded by ServerLimits, pictures under
+// way by sim/run_limits.h; a client that exceeds a limit is answered by an error line or
+// disconnected, and the others go on. Transport is not encrypted.
 //
 //     Simulation simulation(world, {}, clock, std::nullopt);
 //     Server server(simulation, parseEndpoint("127.0.0.1:0"));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The turns of a server's clients and of its world. Each gets 2 ms at most before the other, so
-// that neither a busy client nor a slow world starves the other. Full servers make room by ending
-// the connection that has been without a role longest; too much unread output is relieved by
-// closing the slowest readers, never one within an equal share.
+// The turns of a server's clients and of its world. Each gets some 2 ms before the other (a step or
+// a request that has begun is not interrupted), so that neither starves the other. Full servers
+// make room by ending the connection without a role that has been silent longest; too much unread
+// output is relieved by closing the slowest readers, never one within an equal share.
 #include "server/server_data.h"
 
 #include <poll.h>

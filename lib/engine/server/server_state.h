@@ -283,7 +283,8 @@ class ServerState {
     };
     /// Asynchronous scan(): after startBackground(), a heavy sensor is computed in a background
     /// thread from the current world; equal requests of one period share one reply. Rejected by
-    /// code 409 if the pixels that are pending exceed kMaxWaitingPixels (sim/run_limits.h).
+    /// code 409 if others are pending, and their pixels with its own exceed kMaxWaitingPixels
+    /// (sim/run_limits.h).
     std::shared_ptr<const PendingReply> ask(std::size_t sensor, const ReplyForm& form);
     /// Computes a frame for a record in the same way; requests by ask() for that frame share it.
     void takeFrame(FrameJob job);

@@ -61,10 +61,11 @@ struct RoomRequest;
 /// The server's side of one client's dialogue in the Simulator TCP Protocol, version 1, without
 /// transport: it reads lines and writes bytes. ispace-protocol(7) describes the language.
 ///
-/// Each request gets one line in answer, "OK …" or "ERR CODE reason", in the order of requests;
-/// events and readings that are older than the answer come before it. A request that cannot be
-/// answered now is kept, and those after it stay unread. Motion commands send a further line when
-/// they end. Bad requests never throw; std::bad_alloc of one becomes ERR 409.
+/// Each request gets one line in answer, "OK …", "SCAN …" or "ERR CODE reason", maybe with bytes
+/// behind it, in the order of requests; events and readings that are older than the answer come
+/// before it. A request that cannot be answered now is kept, and those after it stay unread. Motion
+/// commands send a further line when they end. Bad requests do not throw; std::bad_alloc of one
+/// becomes ERR 409, but for the requests of an extension's role, which pass it on.
 ///
 ///     Session session(state);
 ///     session.request("ROBOT r1");

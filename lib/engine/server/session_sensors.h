@@ -3,9 +3,10 @@
 //
 //     SCAN l1 t=0.250 seq=1 r=1.234,-,2.000
 //
-// Lines hold metres, degrees and seconds with three decimals; the bytes after a binary line hold
-// floats as the sensor has them. The text depends on the reading and the form alone, so all readers
-// of a reading share it. Pure functions.
+// Lines hold metres, degrees and seconds; times, ranges and measured values have three decimals,
+// other numbers as many as they need. Bytes after a line are as FrameFormat says, those of a laser
+// its ranges as float32. The text depends on the reading and the form alone, so all readers of a
+// reading share it. Pure functions.
 #pragma once
 
 #include <span>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A piece of furniture that moves changes a view only in its shadow before and after, seen from the
-// lens. Cells there are cast anew, all others keep their state; counts of sensors by cell are
-// changed, read, and changed back. Not safe for several threads at once: the counts are shared.
+// lens. Cells there are cast anew, all others keep their state, but for level lasers and sensors
+// above the piece, whose views are computed anew; counts of sensors by cell are changed, read, and
+// changed back. Not safe for several threads at once: the counts are shared.
 #include "extensions/advice/suggested_moves.h"
 
 #include <tbb/parallel_for.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Straight pieces of curves. Bounds: a chord over the angle a of a circle is r (1 - cos(a / 2))
 // off; over a step h of the parameter of a cubic h^2 / 8 of its greatest second derivative, which
-// lies at an end. Splines (C. de Boor, On calculating with B-splines, 1972) are halved until three
-// points of each piece are within half of kCurveSagitta, at most 12 times between two knots: a test
-// by samples, no bound. All are in metres, after scaling, so a drawing gets as many points as its
-// plan needs, whatever its unit.
+// lies at an end; these hold up to kMaxPieces pieces. Splines (C. de Boor, On calculating with
+// B-splines, 1972) are halved until three points of each piece are within half of kCurveSagitta, at
+// most 12 times between two knots: a test by samples, no bound. All are in metres, after scaling,
+// so a drawing gets as many points as its plan needs, whatever its unit.
 #include "extensions/cad/curves.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Encodings of names in DXF.
 #pragma once
 
 #include <map>

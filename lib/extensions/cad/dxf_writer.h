@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes ASCII DXF of AutoCAD 2000 (AC1015), the oldest version with true colours and extended data
-// that all readers take.
+// Writes ASCII DXF of AutoCAD 2000 (AC1015), with colours of layers as true colours (group 420, of
+// AutoCAD 2004), which readers skip that do not know them.
 #pragma once
 
 #include <memory>

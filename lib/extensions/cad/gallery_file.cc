@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads instances of the art gallery problem (AGPLIB: M. C. Couto, C. C. de Souza, P. J. de
-// Rezende, Instances for the Art Gallery Problem, 2009). Fractions are rounded to the nearest
-// double, and coordinates are not snapped: a proof about a gallery is about these doubles.
+// Rezende, Instances for the Art Gallery Problem, 2009). Fractions are rounded to doubles, and
+// coordinates are not snapped: a proof about a gallery is about these doubles.
 #include <algorithm>
 #include <cmath>
 #include <optional>

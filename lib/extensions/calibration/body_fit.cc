@@ -4,9 +4,9 @@
 // 1. Foreground: the densest half of a beam's ranges, the shortest interval that holds half of them
 //    (Rousseeuw and Leroy, Robust Regression, 1987), is the room; shorter beams by six standard
 //    deviations, 50 mm at least, are on a body.
-// 2. Discs: runs of neighbouring beams, four at least, are fitted by Gauss and Newton; a beam
-//    weighs less where it grazes the outline. A disc counts if its mean squared residual is below
-//    four variances.
+// 2. Discs: runs of neighbouring beams, four at least, are fitted by Gauss and Newton; errors are
+//    along the beams, so that a grazing beam weighs more, at most 16 times. A disc counts if its
+//    mean squared residual is below four variances.
 // 3. Moments: scans of several lasers within half a scan's time, 50 ms at most.
 // 4. Start: rigid motions of pairs of places (Procrustes in the plane) by RANSAC (Fischler and
 //    Bolles, 1981), 400 draws, 0.25 m; lasers join the first one in the order of agreement.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files and frames of SDFormat (sdformat.org, specification 1.0 to 1.11; "Pose Frame Semantics",
-// proposals for 1.7 and 1.8). Nothing is downloaded: a URI of Fuel is looked up in local folders.
+// proposals for 1.7 and 1.8). No file is downloaded: a URI of Fuel is looked up in local folders.
 // Each file is read once, each frame resolved once; cycles of includes and of frames are errors.
 #include "extensions/gazebo/sdf_files.h"
 

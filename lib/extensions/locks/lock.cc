@@ -3,7 +3,7 @@
 // then is open and locks no more. Answers are changes of records, with the reason if there is none.
 //
 // checkExit() opens all doors that the person may pass, builds the floor anew, and looks whether a
-// doorway of its part leads out: O(n log n), as a floor is.
+// doorway of its part leads out.
 #include "extensions/locks/lock.h"
 
 #include <algorithm>

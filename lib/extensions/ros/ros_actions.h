@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Actions of ROS 2 over DDS.
 #pragma once
 
 #include <array>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The services of rosapi.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

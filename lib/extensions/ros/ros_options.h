@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of simrun for topics of ROS.
 #pragma once
 
 #include <memory>

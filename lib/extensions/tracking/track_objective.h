@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of `arrange --objective track`.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers are whole: millimetres, hundredths of a degree, which are shorter in JSON and enough for
-// a screen. Clients that have the frame before get differences; others the whole state. Both texts
-// are made on request alone.
+// Poses and ranges are whole numbers, millimetres and hundredths of a degree, which are shorter in
+// JSON and enough for a screen. Clients that have the frame before get differences; others the
+// whole state. Both texts are made on request alone.
 #include "extensions/web/web_frames.h"
 
 #include <algorithm>

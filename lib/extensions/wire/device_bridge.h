@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ports of simulated devices.
 #pragma once
 
 #include <list>

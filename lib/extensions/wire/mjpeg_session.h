@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures of cameras over HTTP, as network cameras serve them: MJPEG (multipart/x-mixed-replace,
 // RFC 2046 with the replacement of Netscape) at /, /stream, /stream.mjpg and /video, single
-// pictures otherwise. Requests of foreign web pages are refused by their Host. Slow readers skip
-// pictures, never parts of one.
+// pictures at /snapshot with any suffix and /?action=snapshot. A Host that is neither an address
+// nor a name without a dot is refused, against DNS rebinding. Slow readers skip pictures, never
+// parts of one.
 #pragma once
 
 #include <cstddef>

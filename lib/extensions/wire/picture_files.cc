@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures are captured on request alone, and encoded in the background. Half of the time at most
-// goes to them: after one that took d, the next begins d later.
+// goes to streams: after one that took d, the next begins d later. Those wanted at once are made.
 #include "extensions/wire/picture_files.h"
 
 #include <utility>

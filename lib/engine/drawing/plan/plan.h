@@ -3,8 +3,8 @@
 // scene, drawing, raster.
 //
 // Plans, maps of coverage and pages draw a room by the same functions, so that a thing looks alike
-// in all of them. Walls are cut at 1.2 m, as in drawings of buildings (ISO 128): lower parts are
-// pale, higher ones dashed.
+// in all of them. Walls are cut at 1.2 m, about as in drawings of buildings: lower parts are pale,
+// higher ones dashed.
 //
 //     writeAll("room.pdf", drawPlan(scene, {.format = PictureFormat::Pdf, .title = "Hall"}));
 #pragma once

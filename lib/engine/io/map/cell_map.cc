@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rooms of a map of cells, in the steps that cell_map.h lists. Each room is cut out with a rim and
-// worked on alone, so time and memory grow with the boxes of kept rooms, not with the map. Records
-// of walls from other inputs win over the map: floor under them is restored, and cleaning leaves
-// the cells beside them.
+// worked on alone, so time and memory of that grow with the boxes of kept rooms, not with the map.
+// Records of walls from other inputs win over the map: floor under them is restored, and cleaning
+// leaves the cells beside them.
 #include "io/map/cell_map.h"
 
 #include <algorithm>

@@ -5,11 +5,12 @@
 // Gaps close where the floor is narrowest: floor that a disc of the gap's width fits into belongs
 // to the outside or to the rooms, and the rest is flooded by the widest way, narrower cells later
 // (bottleneck paths: M. Pollack, The maximum capacity through a network, 1960). Squared clearances
-// are small whole numbers, so buckets replace a heap: O(cells).
+// are small whole numbers, so buckets replace a heap: O(cells + width squared).
 //
 // Noise is judged by chance: where cells of noise have the density p, chance makes a(n) p^n
 // clusters of n cells for each cell, a(n) the number of fixed polyplets (OEIS A006770). Clusters of
-// which chance makes less than half a one on the map are things.
+// which chance makes less than half a one in the room are things; those of up to two cells are
+// always noise, those of more than eight never.
 #include "io/map/map_rooms.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // Sets of witnesses that single points may see, by the vertices of the arrangement of their
 // windows: corners, ends of windows and crossings. Nearly parallel windows cross somewhere along
 // their common part; the vertex then has an error of half its length, and its set grows by all that
-// come so near. O(windows + crossings * witnesses).
+// come so near.
 #include "extensions/proofs/gallery/witness_sets.h"
 
 #include <tbb/blocked_range.h>

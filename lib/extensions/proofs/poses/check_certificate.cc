@@ -144,8 +144,8 @@ void CertificateChecker::readTuple(Boxes boxes) {
     }
 }
 
-/// Views of the boxes that tuples use are fine and large, of parts of these large, of all other
-/// leaves the area alone; then a box sees no more than the better of its halves.
+/// Boxes that tuples use get views in fine and in large cells, boxes within them in large ones; of
+/// the other leaves only the area is kept. Then a box sees no more than the better of its halves.
 void CertificateChecker::computeViews() {
     constexpr std::size_t kMaxBytes = std::size_t{8} << 30U;
     for (const std::uint32_t id : blind_) boxes_[id].is_used = true;
