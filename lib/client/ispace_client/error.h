@@ -21,7 +21,8 @@ class ConnectionError : public Error {
 };
 
 /// The answer has not arrived in time; the server may still do what was asked. The connection
-/// remains usable: a late answer is dropped.
+/// remains usable: a late answer is dropped. Not so if the request could not be sent in time, see
+/// Connection.
 class Timeout : public Error {
   public:
     explicit Timeout(const std::string& what) : Error(what) {}
@@ -40,7 +41,8 @@ class Refused : public Error {
     /// 400 syntax, 401 token, 403 not allowed in this run, 404 unknown name or one that is gone,
     /// 405 not in this role or not now, 408 no role in time, 409 held by another client or
     /// impossible as the world is, 413 too long, 416 out of range, 429 too many. The server closes
-    /// the connection after 408 and 413, and after 429 for clients or unread data.
+    /// the connection after 408 and 413, after 429 for clients or unread data, after the third
+    /// wrong token, and after a first line that is no request.
     int code() const { return code_; }
 
   private:

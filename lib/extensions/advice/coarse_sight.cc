@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells of 5 to 50 cm stand for exact regions. A view's error grows with its outline, which passes
 // more of smaller cells: 8 cells, times the root of 0.18 m by their edge, were rarely exceeded in
-// furnished rooms. The bound is measured, not proven; a change that it hides gains less than that.
+// furnished rooms. The bound is measured, not proven, and may hide a change that gains little more
+// than it.
 //
 // Sights are kept by place: headings of one place share their rays, and poses that were looked at
 // once are looked up. Poses of one sensor run side by side; sums are by pose, so that figures do

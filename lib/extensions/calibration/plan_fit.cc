@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps of fitToPlan():
 //
-// 1. Each beam's mean over the densest half of its ranges, with its variance; beams that return in
-//    half of the scans or fewer are left out.
+// 1. Each beam's mean over the ranges within four standard deviations of their densest half, with
+//    its variance; beams that return in half of the scans or fewer are left out.
 // 2. Starts: for a level laser a ring of 360 rays from each point of a grid over the free floor
 //    (0.35 m, at most some 20 000 points), compared at 180 headings, errors capped at 0.5 m; every
 //    local minimum over the heading is a start.

@@ -2,9 +2,9 @@
 // Carries states and commands between a run and a broker.
 //
 // Guarantees: the broker holds the newest state of each thing (retained, QoS 1), in the order of
-// publication; after a reconnection all are published anew. Commands are carried out between steps,
-// in the order of arrival, up to 1000 that wait; further ones are refused on PREFIX/error. Payloads
-// of commands are untrusted, at most 256 bytes.
+// publication; after a reconnection all are published anew. Commands to things are carried out
+// between steps, in the order of arrival, up to 1000 that wait; further ones are refused on
+// PREFIX/error, and so are values of more than 256 bytes. Commands to robots do not wait.
 #pragma once
 
 #include <deque>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Walls are cut a metre above each storey's floor, over most sills and under most lintels, whatever
 // their own storey: a wall of two storeys is in both plans. Doors and windows are boxes of their
-// openings; spaces lower than 1.2 m are no rooms. Parts of walls are walls whatever their class. A
-// file without storeys is one storey with the floor at the median foot of its doors, else of its
-// walls.
+// openings; spaces lower than 1.2 m are no rooms. Parts of walls are walls whatever their class,
+// but for doors, windows and openings. A file without storeys is one storey with the floor at the
+// median foot of its doors, else of its walls.
 #include <algorithm>
 #include <array>
 #include <cmath>
