@@ -49,17 +49,13 @@ void FloorTiles::add(std::span<const Curve> curves, double weight) {
     if (curves.empty() || box_.empty()) return;
     std::vector<double> before = std::exchange(sums_, std::vector<double>(sums_.size()));
     std::vector<Polygon> floor;
-    double missed = 0;  // between chords and arcs, at most
     for (const Curve& curve : curves) {
         floor.push_back(chords(curve, kChordErrorOfTiles));
         if (std::any_of(curve.begin(), curve.end(), [](const CurveEdge& e) { return e.isArc(); }))
-            missed += kChordErrorOfTiles * perimeter(curve);
+            beyond_chords_ += weight * kChordErrorOfTiles * perimeter(curve);
     }
     divide(floor, {}, weight);
     constexpr std::size_t kWidth = kSide + 1;
-    // Where a tile holds floor, it may hold all that lies beyond chords.
-    for (double& tile : sums_)
-        if (tile > 0) tile += weight * missed;
     for (std::size_t y = 1; y < kWidth; ++y)
         for (std::size_t x = 1; x < kWidth; ++x) {
             const std::size_t i = x + y * kWidth;
@@ -113,7 +109,7 @@ double FloorTiles::mostIn(const Box2& box) const {
     const std::size_t top = (tileAt(box.high.y - box_.low.y, box_.depth()) + 1) * kWidth;
     const double sum =
         sums_[right + top] - sums_[left + top] - sums_[right + bottom] + sums_[left + bottom];
-    return std::max(0.0, sum);
+    return std::max(0.0, sum) + beyond_chords_;
 }
 
 double mostWithin(double range, const CellSet& cells, const Grid& grid) {

@@ -26,12 +26,12 @@ class FloorTiles {
     /// Of floor in this box, which is not empty.
     explicit FloorTiles(const Box2& box);
 
-    /// Adds floor to the left of these curves. Arcs count as chords at most 1 mm from them; a tile
-    /// with floor counts all the area between arcs and chords, too, other tiles not.
+    /// Adds floor to the left of these curves. Arcs count as chords at most 1 mm from them.
     /// O((n + tiles) log tiles) \pre weight >= 0
     void add(std::span<const Curve> curves, double weight);
-    /// Returns the weight in all tiles that the box meets, and thus at least that in the box, up to
-    /// rounding.
+    /// Returns the weight in all tiles that the box meets, and all that may lie between arcs and
+    /// their chords: at least the weight in the box, up to rounding. 0 for a box beside the
+    /// floor's.
     [[nodiscard]] double mostIn(const Box2& box) const;
 
   private:
@@ -43,6 +43,7 @@ class FloorTiles {
     [[nodiscard]] static std::size_t tileAt(double offset, double extent);
 
     Box2 box_;
+    double beyond_chords_ = 0;  // the most that lies there, wherever it is
     /// [x + y * (kSide + 1)]: the sum over the tiles to the left of x and below y.
     std::vector<double> sums_;
 };

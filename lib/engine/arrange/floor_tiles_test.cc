@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -42,6 +44,25 @@ TEST(FloorTiles, HoldFloorBeyondChords) {
     const double all = tiles.mostIn({{-1, -1}, {21, 21}});
     EXPECT_GE(all, signedArea(disc));
     EXPECT_EQ(tiles.mostIn(Box2()), 0);
+}
+
+TEST(FloorTiles, HoldFloorWhereChordsLeaveATileEmpty) {
+    // The top of the disc lies beyond a chord, alone in the last row of tiles.
+    Curve disc;
+    const auto at = [](int degrees) {
+        const double a = degrees * std::numbers::pi / 180;
+        return Point2{10 + 10 * std::cos(a), 10 + 10 * std::sin(a)};
+    };
+    for (const int from : {10, 100, 190, 280})
+        disc.push_back({at(from), at(from == 280 ? 10 : from + 90), 10, {10, 10}});
+    const double row = 19.9999 / 63;
+    FloorTiles tiles({{0, 0}, {20, 64 * row}});
+    tiles.add({&disc, 1}, 1);
+    // A cap of 0.1 mm: two thirds of its chord times its height.
+    const double cap = 2.0 / 3 * 2 * std::sqrt(2 * 10 * 1e-4) * 1e-4;
+    EXPECT_GE(tiles.mostIn({{9, 19.99995}, {11, 20}}), cap);
+    // It stays a bound of use: a box within is no more than its tiles and a strip along the circle.
+    EXPECT_LE(tiles.mostIn({{8, 8}, {12, 12}}), 5 * 5 + 1e-3 * 63);
 }
 
 TEST(FloorTiles, BoundCellsInReachOfAnyPoint) {
