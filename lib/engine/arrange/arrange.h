@@ -279,10 +279,9 @@ struct Arrangement {
 /// What the options ask of a room (weights, zones, rules of views) is taken from its goals; those
 /// of the options say whether it is asked of any room.
 ///
-/// A target that is not reached is a result (is_reached), not an error. With rules of privacy, the
-/// search is repeated without the poses from which cameras see a zone, up to 100 times;
-/// Arrangement::privacy tells the rest. Sensors without gain stand apart from the others; their ids
-/// are in `idle`.
+/// A target that is not reached is a result (is_reached), not an error. If options.rejected names
+/// sensors of a layout, the search is repeated without their candidates, up to 100 times. Sensors
+/// without gain stand apart from the others; their ids are in `idle`.
 ///
 /// Once progress says stop, candidates are still made for some sites, within about 0.4 s, so that
 /// most interrupted searches return a layout.
