@@ -36,12 +36,12 @@ namespace {
 // Measures of the page, in pixels.
 constexpr double kMargin = 16, kText = 13, kTitle = 16, kHead = 58;
 constexpr double kBarGap = 28, kBarWidth = 18, kLegendWidth = 112;
-constexpr int kMinWidth = 640, kMaxWidth = 4096, kMinHeight = 200;
+constexpr int kLeastWidth = 640, kMostWidth = 4096, kMinHeight = 200;
 constexpr std::uint32_t kNoReturn = 0x000000;
 using palette::kInk;
 constexpr Color kFaint = palette::kFaintInk;
 
-std::uint32_t pixelOf(Color color) {
+std::uint32_t packed(Color color) {
     const auto part = [](double share) {
         return static_cast<std::uint32_t>(std::lround(share * 255));
     };
@@ -76,7 +76,7 @@ class Scale {
         // The ends of the map are skipped: its darkest blue looks like no return.
         constexpr double kColdest = 0.07, kWarmest = 0.96;
         if (near_is_cold_) share = 1 - share;
-        return pixelOf(turboColor(kWarmest + (kColdest - kWarmest) * share));
+        return packed(turboColor(kWarmest + (kColdest - kWarmest) * share));
     }
     /// Returns round depths for the ticks of an axis with room for so many labels.
     [[nodiscard]] std::vector<double> ticks(double room) const {
@@ -105,14 +105,14 @@ struct Zoom {
 
     explicit Zoom(const Ranger& ranger) {
         const int longest = std::max(ranger.columns, ranger.rows);
-        stride = (longest + kMaxWidth - 1) / kMaxWidth;
-        x = std::clamp(kMinWidth / longest, 1, 8);
+        stride = (longest + kMostWidth - 1) / kMostWidth;
+        x = std::clamp(kLeastWidth / longest, 1, 8);
         // Rings of a rotating head are far apart.
         const double shape =
             ranger.projection == Projection::Pinhole
                 ? ranger.fx() / ranger.fy()
                 : ranger.fov_y.degrees() / ranger.rows * ranger.columns / ranger.fov_x.degrees();
-        const double most = std::clamp(kMaxWidth / ranger.rows, 1, 16);
+        const double most = std::clamp(kMostWidth / ranger.rows, 1, 16);
         y = static_cast<int>(std::clamp(std::round(x * shape), 1.0, most));
     }
 };
