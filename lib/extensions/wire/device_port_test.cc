@@ -130,7 +130,7 @@ class EchoServer {
     std::thread thread_;
 };
 
-TEST(wire::DevicePort, CarriesBytesBothWaysAndTheLastOnesToo) {
+TEST(DevicePort, CarriesBytesBothWaysAndTheLastOnesToo) {
     EchoServer run;
     Client client(run.echoPort());
     client.connect();
@@ -141,7 +141,7 @@ TEST(wire::DevicePort, CarriesBytesBothWaysAndTheLastOnesToo) {
     EXPECT_EQ(client.rest(), "three\nquit\nunread\n");
 }
 
-TEST(wire::DevicePort, AnswersWhoHasFinishedSending) {
+TEST(DevicePort, AnswersWhoHasFinishedSending) {
     EchoServer run;
     Client client(run.echoPort());
     client.connect();
@@ -150,7 +150,7 @@ TEST(wire::DevicePort, AnswersWhoHasFinishedSending) {
     EXPECT_EQ(client.rest(), "one\nmany" + std::string(kPacket, 'm') + "\n");
 }
 
-TEST(wire::DevicePort, NeedsSuchADevice) {
+TEST(DevicePort, NeedsSuchADevice) {
     TestWorld room;
     Server server(room.simulation, parseEndpoint("127.0.0.1:0"));
     try {
@@ -166,7 +166,7 @@ TEST(wire::DevicePort, NeedsSuchADevice) {
               "no camera `l1`: the scene has none");
 }
 
-TEST(wire::DevicePort, ServesSoManyAndNoMore) {
+TEST(DevicePort, ServesSoManyAndNoMore) {
     EchoServer run;
     Client a(run.echoPort()), b(run.echoPort()), c(run.echoPort());
     EXPECT_EQ(a.connect().ask("a"), "a");
@@ -182,7 +182,7 @@ TEST(wire::DevicePort, ServesSoManyAndNoMore) {
     }));
 }
 
-TEST(wire::DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
+TEST(DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
     EchoServer run;
     Client mute(run.echoPort()), other(run.echoPort());
     mute.connect().send("stray bytes");
@@ -196,7 +196,7 @@ TEST(wire::DevicePort, WhoSaysNothingThatIsUnderstoodMakesRoom) {
     EXPECT_EQ(other.ask("still"), "still");
 }
 
-TEST(wire::DevicePort, WhoHasSaidAWordAndNoMoreMakesRoomUnlessItIsServed) {
+TEST(DevicePort, WhoHasSaidAWordAndNoMoreMakesRoomUnlessItIsServed) {
     EchoServer run;
     Client idle(run.echoPort()), served(run.echoPort());
     EXPECT_EQ(idle.connect().ask("a"), "a");
@@ -212,7 +212,7 @@ TEST(wire::DevicePort, WhoHasSaidAWordAndNoMoreMakesRoomUnlessItIsServed) {
     EXPECT_EQ(served.ask("still"), "still");
 }
 
-TEST(wire::DevicePort, WhoAsksNothingForLongEnds) {
+TEST(DevicePort, WhoAsksNothingForLongEnds) {
     ServerLimits limits;
     limits.roleless = std::chrono::milliseconds(200);
     EchoServer run({Clock::Kind::Real, 100}, limits);
@@ -223,14 +223,14 @@ TEST(wire::DevicePort, WhoAsksNothingForLongEnds) {
     for (int i = 0; i < 100; ++i) EXPECT_EQ(served.line().size(), kPacket - 1);
 }
 
-TEST(wire::DevicePort, ChangesHaveTheirTurnWhileTheWorldWaits) {
+TEST(DevicePort, ChangesHaveTheirTurnWhileTheWorldWaits) {
     EchoServer run({Clock::Kind::Step, 1});
     Client client(run.echoPort());
     EXPECT_EQ(client.connect().ask("wait"), "wait");
     EXPECT_EQ(client.line(), "done");
 }
 
-TEST(wire::DevicePort, WhoOnlyListensStays) {
+TEST(DevicePort, WhoOnlyListensStays) {
     EchoServer run({Clock::Kind::Real, 100}, {}, kListened);
     Client a(run.echoPort()), b(run.echoPort());
     a.connect();
@@ -243,7 +243,7 @@ TEST(wire::DevicePort, WhoOnlyListensStays) {
     EXPECT_EQ(b.ask("b"), "b");
 }
 
-TEST(wire::DevicePort, WhoSendsNoMoreReadsOnUntilOthersCome) {
+TEST(DevicePort, WhoSendsNoMoreReadsOnUntilOthersCome) {
     EchoServer run;
     Client reader(run.echoPort()), other(run.echoPort());
     reader.connect().send("stream\n");
@@ -255,7 +255,7 @@ TEST(wire::DevicePort, WhoSendsNoMoreReadsOnUntilOthersCome) {
     EXPECT_EQ(next.connect().ask("c"), "c");
 }
 
-TEST(wire::DevicePort, WhoHasLeftIsNoHindrance) {
+TEST(DevicePort, WhoHasLeftIsNoHindrance) {
     EchoServer run;
     std::list<Client> left;
     for (int i = 0; i < 20; ++i) {
@@ -267,7 +267,7 @@ TEST(wire::DevicePort, WhoHasLeftIsNoHindrance) {
     EXPECT_EQ(next.connect().ask("me"), "me");
 }
 
-TEST(wire::DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
+TEST(DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
     EchoServer run({Clock::Kind::Step, 1});
     Client text(run.server().port()), device(run.echoPort()), world(run.server().port());
     text.take("ROBOT r1");
@@ -286,7 +286,7 @@ TEST(wire::DevicePort, ARobotHasOneDriverWhateverTheProtocol) {
     EXPECT_NE(robot.ask("STATUS").find(" speed=0.000 "), std::string::npos);
 }
 
-TEST(wire::DevicePort, ClocksShowSimulatedTimeOrThatOfTheWall) {
+TEST(DevicePort, ClocksShowSimulatedTimeOrThatOfTheWall) {
     EchoServer simulated({Clock::Kind::Step, 1});
     Client device(simulated.echoPort()), world(simulated.server().port());
     EXPECT_EQ(device.connect().ask("clock"), "0");
@@ -302,7 +302,7 @@ TEST(wire::DevicePort, ClocksShowSimulatedTimeOrThatOfTheWall) {
     EXPECT_TRUE(soon([&] { return std::stoll(other.ask("clock")) > first + 20'000'000; }));
 }
 
-TEST(wire::DevicePort, ASlowReaderMissesWholePackets) {
+TEST(DevicePort, ASlowReaderMissesWholePackets) {
     EchoServer run;
     Client client(run.echoPort(), 4096);
     client.connect().send("stream\n");
@@ -326,7 +326,7 @@ TEST(wire::DevicePort, ASlowReaderMissesWholePackets) {
     EXPECT_GT(missed, 0);
 }
 
-TEST(wire::DevicePort, AFloodHarmsNobody) {
+TEST(DevicePort, AFloodHarmsNobody) {
     EchoServer run;
     Client flood(run.echoPort(), 4096), world(run.server().port());
     flood.connect();
