@@ -16,7 +16,7 @@ namespace {
 using namespace ispace;
 
 constexpr std::size_t kCells = 150;
-const poses::Sector kSector{2.5, 2, 0};
+const proofs::poses::Sector kSector{2.5, 2, 0};
 const Region kRoom{{{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 6}, {0, 6}}, {}};
 
 /// Area that two lasers in the arms of the room see, or one of them; chords lie within the views.

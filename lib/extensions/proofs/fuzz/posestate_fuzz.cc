@@ -37,7 +37,7 @@ JobResults emptyResults() {
 }
 
 proofs::PoseBound goOn(JobResults& results, int sensors) {
-    const poses::PoseFloor floor({&kRoom, 1}, kCells);
+    const proofs::poses::PoseFloor floor({&kRoom, 1}, kCells);
     StopSoon progress;
     return proofs::boundOverPoses(floor, {2.5, 2, 0},
                                   {.sensors = sensors,
