@@ -36,8 +36,8 @@ std::string formatsText() {
 int main(int argc, char** argv) {
     return ispace::runTool("expand_page", [&] {
         if (argc != 3) throw ispace::UsageError("wanted a template and a page");
+        static_cast<void>(ispace::extensions());  // add records and formats
         std::string page = ispace::expandManual(ispace::readAll(argv[1]), ispace::sceneSchemas());
-        static_cast<void>(ispace::extensions());  // add formats, after the records of the core
         if (const std::size_t at = page.find(kFormatsMark); at != std::string::npos)
             page.replace(at, kFormatsMark.size(), formatsText());
         if (const std::size_t at = page.find(kBuildingMark); at != std::string::npos) {

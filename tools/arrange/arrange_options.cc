@@ -174,8 +174,6 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     line_.group("Goals");
     addGoalOptions();
     objectives_.declare(line_);
-    options_.groups = std::make_shared<ArrangeExtensions>(extensions().arrange());
-    options_.groups->declare(line_);
     line_.group("Robustness");
     addRobustOptions();
     line_.group("Search");
@@ -322,6 +320,10 @@ void ArrangeCommand::addGoalOptions() {
         },
         "spend at most this, at cost= per sensor (default 1); COUNT is then a maximum",
         Enters::History);
+    // Their words come here in the history of a layout.
+    options_.groups = std::make_shared<ArrangeExtensions>(extensions().arrange());
+    options_.groups->declare(line_);
+    line_.group("Plane and cells");
     line_.meters("--plane", how.plane, 0, 1000,
                  "height of the plane that all sensors but level lasers cover, 0 is the floor",
                  Enters::History);

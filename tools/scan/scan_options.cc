@@ -136,7 +136,7 @@ void ScanCommand::declare(ToolExtensions& tool_extensions) {
         Enters::History);
     line_.parsed(
         "--size", "W[,H]", [this](const std::string& text) { size_ = pictureSize(text); },
-        "pixels of a picture; W alone: of each side of an obstacle map (default 800)",
+        "pixels of a view, W,H; or of each side of an obstacle map, W (default 800)",
         Enters::History);
     constexpr double kColdest = -100, kHottest = 100;
     line_.parsed(

@@ -217,7 +217,7 @@ namespace {
 
 constexpr std::size_t kSpotsListed = 5;
 
-std::string metres(double value) { return formatFixed(value, 2); }
+std::string twoDecimals(double value) { return formatFixed(value, 2); }
 std::string area(double value) { return formatFixed(value, 2) + " m2"; }
 std::string percent(double share) { return percentText(share); }
 
@@ -375,7 +375,7 @@ std::string piecesText(const CoverageReport& report) {
     for (const UncoveredSpot& spot : report.unseen) {
         if (rows.size() == kSpotsListed || spot.area < kMinArea) break;
         rows.push_back({" ", area(spot.area), "around",
-                        "(" + metres(spot.place.x) + ", " + metres(spot.place.y) + ")"});
+                        "(" + twoDecimals(spot.place.x) + ", " + twoDecimals(spot.place.y) + ")"});
     }
     if (rows.empty()) return text + "no spot of free floor of 0.01 m2 or more is unseen\n";
     text += "largest spots of free floor that no sensor sees:\n" + aligned(rows, "lrl");
@@ -412,11 +412,12 @@ std::string coverageText(const CoverageReport& report) {
     const Box2& limits = report.limits;
     std::string text = aligned(
         {{"environment", printable(report.digest)},
-         {"limits", "x " + metres(limits.low.x) + " to " + metres(limits.high.x) + " m, y " +
-                        metres(limits.low.y) + " to " + metres(limits.high.y) + " m"},
+         {"limits", "x " + twoDecimals(limits.low.x) + " to " + twoDecimals(limits.high.x) +
+                        " m, y " + twoDecimals(limits.low.y) + " to " + twoDecimals(limits.high.y) +
+                        " m"},
          {"grid", cellsText(report.grid)},
          {"indoor area", area(report.indoor_area)},
-         {"free floor", area(report.free_area) + " at " + metres(report.height) + " m"}},
+         {"free floor", area(report.free_area) + " at " + twoDecimals(report.height) + " m"}},
         "l");
     if (report.density > 0)
         text +=

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/sim: the files of a record, and their lines.
+// lib/engine/sim: the files of a record, and their lines.
 //
 // A line is whole or absent: text is collected in memory and written up to its last newline, a torn
 // line of a full disk is taken back, and a file of an earlier run is replaced, not overwritten.

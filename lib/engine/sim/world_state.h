@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state of a world, and the transition to the next scene. Private to lib/engine/sim, but for
-// startWarnings().
+// lib/engine/sim: the state of a world, and the transition to the next scene. Other folders call
+// startWarnings() alone.
 //
 // A scene and the structures built of it (SceneResources) are slow to make and do not depend on
 // where movers are, so another thread may make the next ones while the world goes on. Data is the

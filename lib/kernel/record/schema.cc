@@ -222,7 +222,9 @@ std::string expandManual(std::string_view page, const Schemas& schemas) {
         for (std::string name; names >> name;) {
             const RecordType type = typeOf(name, lines.number());
             for (const Schema& schema : schemas.all())
-                if (schema.type == type) out += manualOf(schema);
+                if (schema.type == type &&
+                    page.find("\n.SS " + schema.keyword + '\n') == std::string_view::npos)
+                    out += manualOf(schema);
         }
     }
     return out;

@@ -140,7 +140,7 @@ void checkValue(const KeySpec& key, const Value& value);
 
 /// Expands a manual page in man(7) format: replaces each line `@RECORDS TYPE…@` by the keywords of
 /// these types (space, floor, wall, infra, other, placement, meta), each with its keys, their
-/// values, units, bounds and defaults.
+/// values, units, bounds and defaults. A keyword with a section in the page is left out.
 /// \throws FormatError for an unknown type
 std::string expandManual(std::string_view page, const Schemas& schemas);
 

@@ -47,6 +47,9 @@ TEST(Manual, PutsRecordsInTheirPlace) {
     EXPECT_NE(page.find(".SS desk\n"), std::string::npos);
     EXPECT_EQ(page.find(".SS laser\n"), std::string::npos);
     EXPECT_TRUE(page.ends_with(".SH END\n"));
+    const std::string own =
+        expandManual(".TH X\n@RECORDS wall other@\n.SS desk\nOf oak.\n", testSchemas());
+    EXPECT_EQ(own.find(".SS desk\n"), own.rfind(".SS desk\n"));
     EXPECT_THROW(expandManual("@RECORDS walls@\n", testSchemas()), FormatError);
 }
 

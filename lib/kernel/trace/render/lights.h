@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/kernel/trace/render: lamps, sky, and the light of a picture before it is smoothed.
+// lib/kernel/trace/render: lamps, sky, and the light of a picture before it is smoothed.
 //
 // Radiance is relative: 1 is a white surface in the light of the whole room. Light is smoothed by
 // an edge-avoiding a-trous filter (H. Dammertz et al., Edge-avoiding a-trous wavelet transform for
