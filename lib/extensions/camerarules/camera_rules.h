@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces that cameras see from ahead, and zones that they must not see.
+// lib/extensions/camerarules: faces that cameras see from ahead, and zones that they must not see.
 //
 // Both are areas of overlays of the cameras' exact regions, in which a set of points that face a
 // camera is a wedge: apex at the camera, sides at the rule's angle. What remains is cut to the box
