@@ -9,6 +9,8 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "record/missing_keywords.h"
+#include "record/record.h"
 
 namespace ispace {
 
@@ -112,6 +114,8 @@ UsageError unknownSensor(const std::string& model, Kinds kinds, const DeviceCata
                           ", which this option does not take");
     if (const std::string models = modelsLike(model, kinds, devices); !models.empty())
         return UsageError("`" + model + "` is no sensor by itself, name one of these: " + models);
+    if (!missingExtension(model).empty())
+        return UsageError("unknown sensor `" + model + "`" + spellingHint(model, {}));
     return UsageError("unknown sensor `" + model + "`" +
                       didYouMean(model, knownSensors(kinds, devices)) +
                       " (a bare kind of ispace-3dm(5), or a device: scan --list-models names all)");

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
+#include "record/missing_keywords.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "support/test_layout.h"
@@ -41,6 +42,13 @@ TEST(SensorSpec, APieceWithoutEqualsContinuesTheValueBeforeIt) {
     EXPECT_EQ(formatRecord(read("laser,range=0.1,4,fov=270:2").record),
               "laser range=0.1,4 fov=270");
     EXPECT_EQ(formatRecord(read("laser,range=50cm,4m").record), "laser range=0.5,4");
+}
+
+TEST(SensorSpec, ErrorsNameTheExtensionOfAKindThatThisBuildLacks) {
+    addMissingKeyword("seismometer", "tremors");
+    EXPECT_EQ(errorOf("seismometer"),
+              "unknown sensor `seismometer`, which the extension tremors reads: this build lacks "
+              "that extension");
 }
 
 TEST(SensorSpec, ErrorsNameWhatIsWrong) {
