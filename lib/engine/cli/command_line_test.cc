@@ -84,6 +84,14 @@ TEST(CommandLine, OptionsAndOperandsInAnyOrder) {
     EXPECT_FALSE(tool.line.given("--threads"));
 }
 
+TEST(CommandLine, AnOptionThatTheBuildLacksIsNotGiven) {
+    Tool tool;
+    tool.parse({"--json"});
+    EXPECT_TRUE(tool.line.given("--json"));
+    EXPECT_FALSE(tool.line.given("--strategy"));
+    EXPECT_FALSE(tool.line.given("--of-an-extension"));
+}
+
 TEST(CommandLine, FlagsTakeNoValue) {
     EXPECT_NE(Tool().errorOf({"--json=false"}), "");
     EXPECT_NE(Tool().errorOf({"--progress=false"}), "");
