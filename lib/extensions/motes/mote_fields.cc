@@ -56,7 +56,8 @@ FieldValue marginsAsText(const View& reading) {
 
 FieldValue motesOfRoom(const View& reading) {
     std::vector<std::string> ids;
-    for (const MoteRadio& one : reading.sensor.as<Mote>().motes) ids.push_back(one.id);
+    for (const MoteRadio& one : reading.sensor.as<Mote>().motes)
+        ids.push_back(idBeside(reading.sensor.id, one.id));
     return ids;
 }
 
@@ -65,7 +66,8 @@ FieldValue marginsByMote(const View& reading) {
     const std::vector<Neighbour>& neighbours = neighboursIn(reading);
     auto next = neighbours.begin();  // both are in the order of the scene
     for (const MoteRadio& one : reading.sensor.as<Mote>().motes) {
-        const bool is_heard = next != neighbours.end() && next->mote == one.id;
+        const bool is_heard =
+            next != neighbours.end() && next->mote == idBeside(reading.sensor.id, one.id);
         margins.push_back(is_heard ? next->margin : kNoValue);
         if (is_heard) ++next;
     }

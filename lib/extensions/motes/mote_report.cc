@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -40,10 +42,14 @@ class CarriedMotes {
     std::unordered_map<std::uint32_t, Pose2> poses_;  // of bodies, by their owners
 };
 
+/// Returns an id without its storey.
+std::string_view inRoom(std::string_view id) { return id.substr(id.rfind('/') + 1); }
+
 /// The table of neighbours of a mote: the strongest signals, of equal ones the first in the scene.
 class NeighbourTable {
   public:
-    NeighbourTable(const Mote& mote, const Moment& now) : mote_(mote), now_(now) {}
+    NeighbourTable(const Mote& mote, const Moment& now)
+        : mote_(mote), now_(now), own_id_(inRoom(now.sensor.id)) {}
 
     /// Returns how much stronger a signal over this distance is, without walls, than the weakest
     /// that is heard.
@@ -56,7 +62,7 @@ class NeighbourTable {
                (heard_.size() < Mote::kMostNeighbours || margin >= heard_.front().margin);
     }
     void offer(std::uint32_t number, Point3 from) {
-        if ((mote_.motes.begin() + number)->id == now_.sensor.id) return;
+        if ((mote_.motes.begin() + number)->id == own_id_) return;
         const Point3 here = now_.pose.position;
         const double free = freeMargin(length(from - here));
         if (!mayTake(free)) return;
@@ -75,7 +81,8 @@ class NeighbourTable {
         std::vector<Neighbour> list;
         list.reserve(heard_.size());
         for (const Heard& one : heard_)
-            list.push_back({(mote_.motes.begin() + one.number)->id, one.margin});
+            list.push_back(
+                {idBeside(now_.sensor.id, (mote_.motes.begin() + one.number)->id), one.margin});
         return list;
     }
 
@@ -90,6 +97,7 @@ class NeighbourTable {
 
     const Mote& mote_;
     const Moment& now_;
+    std::string_view own_id_;
     std::vector<Heard> heard_;  // a heap, the weakest at its front
 };
 
@@ -117,6 +125,10 @@ std::vector<Neighbour> neighboursOf(const Mote& mote, const Moment& now) {
 }
 
 }  // namespace
+
+std::string idBeside(std::string_view sensor, std::string_view mote) {
+    return std::string(sensor.substr(0, sensor.size() - inRoom(sensor).size())).append(mote);
+}
 
 MoteReport readingOf(const Mote& mote, const Moment& now) {
     return {readingOf(mote.meter, now).lux, neighboursOf(mote, now)};

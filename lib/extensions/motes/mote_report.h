@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "extensions/motes/mote.h"
@@ -17,7 +18,7 @@ namespace ispace::motes {
 
 /// A mote that another hears.
 struct Neighbour {
-    std::string mote;   ///< id
+    std::string mote;   ///< id, as the report's: in a building with its storey
     double margin = 0;  ///< dB above the weakest signal that is heard
 };
 
@@ -36,5 +37,9 @@ struct MoteReport {
 /// the axis of the mover's body, at the height of its record. Near motes are tried first, and
 /// far ones only while the table has space for weaker signals.
 MoteReport readingOf(const Mote& mote, const Moment& now);
+
+/// Returns the id of another mote of a sensor's room as the sensor's: with a storey if that has
+/// one. \code idBeside("ground/m1", "m2");  // "ground/m2" \endcode
+std::string idBeside(std::string_view sensor, std::string_view mote);
 
 }  // namespace ispace::motes
