@@ -326,10 +326,11 @@ void Traffic::rebuild(std::span<const Motion> motions) {
     grid_.rebuild(places_, reach_);
 }
 
-std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t mover) const {
+std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t mover,
+                                        double stray) const {
     const Move& move = moves[mover];
     const Box2 box =
-        bounds(Segment2{move.start(), move.end()}).expanded(move.radius + move.to.bulge);
+        bounds(Segment2{move.start(), move.end()}).expanded(move.radius + move.to.bulge + stray);
     const std::size_t rank = rank_[mover];
     std::optional<std::size_t> first;
     grid_.forEachNear(box, [&](std::size_t other) {

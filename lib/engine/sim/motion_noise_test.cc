@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/number.h"
 #include "sim/world.h"
 #include "sim/world_state.h"
 #include "support/test_layout.h"
@@ -254,6 +255,39 @@ TEST(MotionNoise, AStartThatLeadsNowhereIsToldOf) {
     EXPECT_EQ(startWarnings(world, "r1").size(), 1U);
     EXPECT_TRUE(startWarnings(world, "r2").empty());
     EXPECT_TRUE(World(room, milliseconds(5), {.seed = 1}).keptStarts().empty());
+}
+
+TEST(MotionNoise, MovesThatItLengthensMeetNoOther) {
+    // Steps of 25 mm whose noise is a quarter of a metre: far beyond what one at top speed reaches.
+    std::string layout;
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < 4; ++k)
+            layout += "robot id=r" + std::to_string(4 * i + k) +
+                      " at=" + formatDouble(1.5 * i - 2.25) + ',' + formatDouble(1.5 * k - 2.25) +
+                      " heading=" + std::to_string(53 * i + 90 * k) + " motion_noise=3,0.1,3,0.1\n";
+    const Scene room = scene("ispace size=7,7\n", layout);
+    int bumps = 0;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        World world(room, milliseconds(50), {.seed = seed, .noise = true});
+        const std::size_t robots = world.robots().size();
+        for (int step = 0; step < 100; ++step) {
+            for (std::size_t i = 0; i < robots; ++i) {
+                bumps += world.isStalled(i) ? 1 : 0;
+                if (step == 0 || world.isStalled(i))
+                    world.command(i, {Verb::Speed, step % 2 == 0 ? 0.5 : -0.5});
+            }
+            world.step();
+            for (std::size_t i = 0; i < robots; ++i)
+                for (std::size_t k = 0; k < i; ++k) {
+                    const double gap =
+                        distance(world.status(i).pose.position, world.status(k).pose.position);
+                    ASSERT_GE(
+                        gap, world.movers()[i].model.radius + world.movers()[k].model.radius - 1e-6)
+                        << seed << ' ' << step << ' ' << i << ' ' << k;
+                }
+        }
+    }
+    EXPECT_GT(bumps, 100);
 }
 
 }  // namespace
