@@ -157,6 +157,19 @@ void Session::request(std::string_view line) {
         closing_ = true;
         return error(400, {"this is no web server, see ispace-protocol(7)"});
     }
+    const std::size_t before = out_.size();
+    try {
+        answer(words, first);
+    } catch (const std::bad_alloc&) {
+        out_.resize(before);
+        out_ += errorLineOf(std::current_exception());
+    }
+    // A role that was refused leaves it in no room.
+    if (role_ == Role::None) state_ = rooms().states.front();
+    sendCompletions();
+}
+
+void Session::answer(Words words, bool first) {
     const auto all = requests();
     const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {
         return request.verb == words.front() && request.role.value_or(role_) == role_;
@@ -180,16 +193,7 @@ void Session::request(std::string_view line) {
                            found->most == 0 ? "" : " ", found->most == 0 ? "" : found->arguments});
     if (found->coupled == true && !worlds().areCoupled())
         return error(405, {found->verb, " is for the runs of buildings"});
-    const std::size_t before = out_.size();
-    try {
-        (this->*found->answer)(words);
-    } catch (const std::bad_alloc&) {
-        out_.resize(before);
-        out_ += errorLineOf(std::current_exception());
-    }
-    // A role that was refused leaves it in no room.
-    if (role_ == Role::None) state_ = rooms().states.front();
-    sendCompletions();
+    (this->*found->answer)(words);
 }
 
 void Session::tooLong(std::size_t limit) {

@@ -65,7 +65,7 @@ struct RoomRequest;
 /// behind it, in the order of requests; events and readings that are older than the answer come
 /// before it. A request that cannot be answered now is kept, and those after it stay unread. Motion
 /// commands send a further line when they end. Bad requests do not throw; std::bad_alloc of one
-/// becomes ERR 409, but for the requests of an extension's role, which pass it on.
+/// becomes ERR 409.
 ///
 ///     Session session(state);
 ///     session.request("ROBOT r1");
@@ -240,6 +240,7 @@ class Session {
         std::int64_t every = 1, seq = 0;
     };
     [[nodiscard]] RoleService* serviceOf(std::string_view verb) const;
+    void answer(Words words, bool first);
     void takeGuestRole(RoleService& service, Words words);
     bool guestRequest(Words words);
     [[nodiscard]] bool guestIsReady() const { return !guest_->waits(); }

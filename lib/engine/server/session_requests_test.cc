@@ -2,9 +2,15 @@
 // The roles ROBOT and LASER.
 // What clients are kept from.
 #include <gtest/gtest.h>
-#include <algorithm>
-#include <string>
 
+#include <algorithm>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "server/client_role.h"
 #include "server/session.h"
 #include "support/test_talk.h"
 
@@ -373,6 +379,49 @@ TEST(Session, RecordsAreWrittenWithTheirIds) {
     limits.pending = 64;
     Talk narrow({Clock::Kind::Step, 1}, {}, "", limits);
     EXPECT_TRUE(narrow.ask(narrow.client("WORLD"), "RECORDS").starts_with("ERR 409 the records"));
+}
+
+/// A role whose requests need more memory than there is.
+class LargeRole final : public ClientRole {
+  public:
+    [[nodiscard]] std::span<const RoleRequest> requests() const override {
+        static constexpr RoleRequest kRows[] = {{"ALL", "", 0, 0}};
+        return kRows;
+    }
+    RoleAnswer request(std::span<const std::string_view> /*words*/) override {
+        throw std::bad_alloc();
+    }
+    [[nodiscard]] bool waits() const override { return false; }
+    std::string stepped(bool /*has_room*/) override { return ""; }
+    [[nodiscard]] std::span<const std::string> sensors() const override { return {}; }
+    [[nodiscard]] double clock(SimTime time) const override { return seconds(time); }
+};
+
+/// Of which client `b` is too large already.
+class LargeService final : public RoleService {
+  public:
+    [[nodiscard]] std::string_view verb() const override { return "LARGE"; }
+    std::unique_ptr<ClientRole> take(std::string_view id, std::string& answer) override {
+        answer += "OK LARGE\n";
+        if (id == "b") throw std::bad_alloc();
+        return std::make_unique<LargeRole>();
+    }
+    void stepped() override {}
+    [[nodiscard]] bool holdsWorld() const override { return false; }
+    [[nodiscard]] std::string waitsFor() const override { return ""; }
+};
+
+TEST(Session, ARoleWithoutMemoryIsAnsweredAndServesOn) {
+    Talk talk;
+    LargeService service;
+    talk.state.addRoleService(service);
+    Session& client = talk.client("LARGE a");
+    EXPECT_EQ(talk.ask(client, "ALL"), "ERR 409 there is not enough memory for this\n");
+    EXPECT_EQ(talk.ask(client, "ALL").substr(0, 8), "ERR 409 ");
+    EXPECT_FALSE(client.closing());
+    Session& other = talk.client();
+    EXPECT_EQ(talk.ask(other, "LARGE b"), "ERR 409 there is not enough memory for this\n");
+    EXPECT_EQ(talk.ask(other, "LARGE a"), "OK LARGE\n") << "no role was taken";
 }
 
 TEST(Session, ShutdownMayBeRefused) {
