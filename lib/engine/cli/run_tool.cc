@@ -259,27 +259,39 @@ using AtStart = void (*)(int, char**, char**);
     std::set_terminate(onTerminate);
 };
 
-}  // namespace
-
-void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept {
-    std::array<char, 4096> line;
-    std::size_t size = 0;
-    for (const std::string_view piece : pieces)
-        size += piece.copy(line.data() + size, line.size() - 1 - size);
-    line[size++] = '\n';
-    const char* rest = line.data();
-    while (size > 0) {
-        const ssize_t n = ::write(STDERR_FILENO, rest, size);
+/// Writes all of a text, also if stderr does not block. \returns false if it is closed
+bool writeToStderr(std::string_view text) noexcept {
+    while (!text.empty()) {
+        const ssize_t n = ::write(STDERR_FILENO, text.data(), text.size());
         if (n >= 0) {
-            rest += n;
-            size -= static_cast<std::size_t>(n);
+            text.remove_prefix(static_cast<std::size_t>(n));
         } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
             pollfd ready{STDERR_FILENO, POLLOUT, 0};
             static_cast<void>(::poll(&ready, 1, -1));
         } else if (errno != EINTR) {
-            return;
+            return false;
         }
     }
+    return true;
+}
+
+}  // namespace
+
+void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept {
+    std::array<char, 4096> part;
+    std::size_t size = 0;
+    const auto put = [&](std::string_view text) {
+        while (!text.empty()) {
+            if (size == part.size() && !writeToStderr({part.data(), std::exchange(size, 0)}))
+                return;
+            const std::size_t n = text.copy(part.data() + size, part.size() - size);
+            size += n;
+            text.remove_prefix(n);
+        }
+    };
+    for (const std::string_view piece : pieces) put(piece);
+    put("\n");
+    writeToStderr({part.data(), size});
 }
 
 void sayMemoryIsOut(std::string_view tool) noexcept {

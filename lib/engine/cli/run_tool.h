@@ -66,9 +66,9 @@ struct ToolFailure {
 /// Converts the exception being handled, for callers that go on after it. \pre within a handler
 ToolFailure currentFailure();
 
-/// Writes the pieces and a newline to stderr, in any form of messages; cuts them at 4095 bytes.
-/// Requires no memory, and waits if stderr is non-blocking. May be called at any time, also before
-/// main().
+/// Writes the pieces and a newline to stderr, in any form of messages: at once if they have up to
+/// 4095 bytes, as lines of several threads or processes need. Requires no memory, and waits if
+/// stderr is non-blocking. May be called at any time, also before main().
 void writeErrorLine(std::initializer_list<std::string_view> pieces) noexcept;
 
 /// Reports, once, that memory ran out; allocates no memory.

@@ -31,8 +31,7 @@ TEST(LastWords, SayALineOfAnyLength) {
     writeErrorLine({"tool", ": ", "error"});
     writeErrorLine({"tool: ", std::string(100000, 'x')});
     const std::string said = testing::internal::GetCapturedStderr();
-    EXPECT_TRUE(said.starts_with("tool: error\ntool: xxx"));
-    EXPECT_TRUE(said.ends_with("x\n"));
+    EXPECT_EQ(said, "tool: error\ntool: " + std::string(100000, 'x') + "\n");
 }
 
 TEST(LastWordsDeathTest, WhatCannotBeCaughtEndsWithStatusOne) {
