@@ -35,6 +35,8 @@ std::string_view withoutPrefix(std::string_view text) {
 Angle angleOf(std::string_view text) {
     KeySpec key;
     key.unit = Unit::Angle;
+    key.lower = -kMaxDistance;  // as headings of records
+    key.upper = kMaxDistance;
     return Angle::degrees(std::get<double>(parseValue(key, text)));
 }
 

@@ -56,8 +56,8 @@ TEST(CameraRules, ParseFacingAndPrivacy) {
     EXPECT_EQ(by_doors.zone, "a,b");
     EXPECT_NEAR(by_doors.within.degrees(), 45, 1e-12);
     EXPECT_TRUE(by_doors.is_by_doors);
-    for (const char* text :
-         {"", "a,x", ",45deg", ",45deg,0", "a,0deg,0", "a,181deg,0", "a,x,0", "a,45deg,0=x"})
+    for (const char* text : {"", "a,x", ",45deg", ",45deg,0", "a,0deg,0", "a,181deg,0", "a,x,0",
+                             "a,45deg,0=x", "a,45deg,1e9"})
         EXPECT_ANY_THROW(parseFacing(text)) << text;
     const FacingRule plain = parseFacing("entrance=90%");
     EXPECT_EQ(plain.zone, "entrance");

@@ -178,6 +178,7 @@ ViewSpec parseView(const std::string& text) {
     std::vector<Part> parts = row.parts;
     const bool has_id =
         row.may_have_id && !fields.empty() && (row.must_have_id || !parseDouble(fields.front()));
+    if (has_id && fields.front().empty()) refuse(row, "no id given");
     if (has_id) {
         spec.id = fields.front();
         fields.erase(fields.begin());

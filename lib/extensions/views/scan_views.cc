@@ -30,14 +30,14 @@ namespace ispace::views {
 
 namespace {
 
-/// Numbers views of the same kind, so that each has a unique file name.
-void nameApart(std::vector<ViewSpec>& views) {
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        const auto same = [&](const ViewSpec& view) { return view.name == views[i].name; };
-        const auto before =
-            std::count_if(views.begin(), views.begin() + static_cast<long>(i), same);
-        if (before > 0) views[i].name += "-" + std::to_string(before + 1);
-    }
+/// Numbers a name that one of the views has: each has a unique file name.
+template <class Views, class NameOf>
+std::string apartFrom(const Views& views, const std::string& name, const NameOf& name_of) {
+    std::string apart = name;
+    const auto has_it = [&](const auto& view) { return name_of(view) == apart; };
+    for (int n = 2; std::any_of(views.begin(), views.end(), has_it); ++n)
+        apart = name + '-' + std::to_string(n);
+    return apart;
 }
 
 /// Returns the positions of the viewers in a room, the red points of a plan.
@@ -108,7 +108,6 @@ class SiteViews {
     SiteViews(const ViewRequest& options, const SiteInput& input)
         : options_(options), input_(input), site_(input) {
         for (const ViewSpec& view : options.views) add(view);
-        for (std::size_t i = 0; i < views_.size(); ++i) nameApart(i);
         for (const RoomView& one : views_)
             if (one.room) roomFor(*one.room, isWithinRoom(one.view));
     }
@@ -159,7 +158,13 @@ class SiteViews {
         if (!input_.isOneRoom()) return addInBuilding(std::move(view));
         if (!view.storey.empty())
             throw UsageError("--view: " + view.storey + "/ is a storey, and this is one room");
-        views_.push_back({0, std::move(view)});
+        place(0, std::move(view));
+    }
+
+    void place(std::optional<std::size_t> room, ViewSpec view) {
+        view.name =
+            apartFrom(views_, view.name, [](const RoomView& other) { return other.view.name; });
+        views_.push_back({room, std::move(view)});
     }
 
     void addInBuilding(ViewSpec view) {
@@ -177,9 +182,9 @@ class SiteViews {
         if (!called.empty()) {
             const Storey* const storey =
                 ofOption("--view", [&] { return &input_.building.document.storey(called); });
-            views_.push_back({static_cast<std::size_t>(storey - storeys.data()), std::move(view)});
+            place(static_cast<std::size_t>(storey - storeys.data()), std::move(view));
         } else if (view.mode == ViewMode::Orbit || (view.mode == ViewMode::Central && !view.at)) {
-            views_.push_back({std::nullopt, std::move(view)});
+            place(std::nullopt, std::move(view));
         } else if (isWithinRoom(view) || view.at) {
             throw UsageError("--view " + view.name +
                              ": the position has no storey before it, as in " + storeys.front().id +
@@ -188,21 +193,9 @@ class SiteViews {
             for (std::size_t i = storeys.size(); i-- > 0;) {
                 ViewSpec own = view;
                 own.name += '-' + storeys[i].id;
-                views_.push_back({i, std::move(own)});
+                place(i, std::move(own));
             }
         }
-    }
-
-    /// Numbers a view whose name an earlier one has.
-    void nameApart(std::size_t i) {
-        const std::string name = views_[i].view.name;
-        const auto end = views_.begin() + static_cast<std::ptrdiff_t>(i);
-        const auto is_taken = [&] {
-            return std::any_of(views_.begin(), end, [&](const RoomView& other) {
-                return other.view.name == views_[i].view.name;
-            });
-        };
-        for (int n = 2; is_taken(); ++n) views_[i].view.name = name + '-' + std::to_string(n);
     }
 
     /// Returns the scene of a room; where the viewer is inside, with all that is seen through
@@ -452,7 +445,12 @@ class ViewGroup : public OptionGroup {
         for (const std::string& form : viewForms()) forms += (forms.empty() ? "" : ", ") + form;
         line.ordered(
             "--view", "SPEC",
-            [this](const std::string& text) { request_.views.push_back(parseView(text)); },
+            [this](const std::string& text) {
+                ViewSpec view = parseView(text);
+                view.name = apartFrom(request_.views, view.name,
+                                      [](const ViewSpec& other) { return other.name; });
+                request_.views.push_back(std::move(view));
+            },
             "draw a picture of the room instead of readings: " + forms +
                 "; of --size W[,H] (default 1280,960, of a camera its own; H follows from W), with "
                 "16 "
@@ -478,7 +476,6 @@ class ViewGroup : public OptionGroup {
         return kHonoured;
     }
     void take(const CommandLine& line) override {
-        nameApart(request_.views);
         ViewOptions& drawing = request_.drawing;
         drawing.labels = labels_.value_or(true);
         const auto of = [&line](const std::string& name) -> std::optional<std::string> {

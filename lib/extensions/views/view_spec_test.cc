@@ -57,6 +57,7 @@ TEST(ViewSpec, RefusesWhatItCannotMean) {
               "bird[:X,Y[,WIDTH]]");
     EXPECT_EQ(errorOf("first-person:1,2"),
               "too few numbers, wanted first-person:X,Y,HEADING[,PITCH]");
+    EXPECT_EQ(errorOf("central:").substr(0, 11), "no id given");
     EXPECT_EQ(errorOf("omni"), "no place given, wanted omni:X,Y[,Z]");
     EXPECT_EQ(errorOf("omni:1,b"), "`b` is no number, wanted omni:X,Y[,Z]");
     EXPECT_EQ(errorOf("robot"), "no id given, wanted robot:ID");
