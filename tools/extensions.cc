@@ -26,6 +26,7 @@ const Extensions& extensions() {
         ISPACE_LUXES
         ISPACE_MOTES
         ISPACE_DOORCOUNTERS
+        ISPACE_GOALS
         ISPACE_EVENNESS
         ISPACE_EXPECT
         ISPACE_GAZEBO

@@ -34,7 +34,7 @@ for name, rows in offers.items():
                 faults.append(f"{name} has no record {offer}: {about}")
         elif owner == "objective":
             about = said("arrange", "-", "--objective", offer, text="")
-            if f"`{offer}` is not coverage" in about:
+            if f"`{offer}` is not coverage" in about and not re.search(rf", {offer}[:\[]", about):  # wants `path:...`
                 faults.append(f"{name} has no objective {offer}: {about}")
         elif owner == "export":
             if all(f"`{offer}` is none of" in said(tool, "-", "-o", "x", "--to", offer, text="")

@@ -31,10 +31,10 @@ struct ArrangedBuilding {
 
 inline ArrangedBuilding arrangedIn(const SiteScene& building,
                                    const std::vector<SensorSpec>& sensors,
-                                   const ArrangeOptions& options, std::vector<RoomGoals> goals = {},
-                                   std::vector<SitePassage> passages = {}) {
+                                   const ArrangeOptions& options,
+                                   std::vector<RoomGoals> goals = {}) {
     SilentProgress progress;
-    const BuildingSite rooms(building, options, std::move(goals), std::move(passages));
+    const BuildingSite rooms(building, options, std::move(goals));
     ArrangedBuilding result{
         groupsOf(building, sensors, options.target.has_value() || options.budget.has_value()), {}};
     result.found = arrange(rooms.site(), result.groups, options, progress);

@@ -14,7 +14,6 @@
 #include "base/error.h"
 #include "base/number.h"
 #include "cli/common_options.h"
-#include "coverage/localisation.h"
 #include "extensions.h"
 #include "record/schema.h"
 
@@ -110,27 +109,6 @@ RobustChoice readRobust(const std::string& text, std::vector<std::string>& rooms
         return robust;
     }
     throw UsageError('`' + text + "` is not rooms:FILE[,FILE...], failures:K or mounting:M,DEG");
-}
-
-/// Parses `coverage`, `path:FROM,TO`, `localise` and `localise:M`. \param more further words
-ObjectiveChoice readObjective(const std::string& text, const std::string& more) {
-    const auto colon = text.find(':');
-    const std::string word = text.substr(0, colon);
-    const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
-    ObjectiveChoice objective;
-    if (text == "coverage") return objective;
-    if (word == "path" && !rest.empty()) {
-        objective.of = ObjectiveChoice::Of::Path;
-        objective.way = parseWay(rest);
-        return objective;
-    }
-    if (text == "localise" || (word == "localise" && !rest.empty())) {
-        objective.of = ObjectiveChoice::Of::Localise;
-        if (!rest.empty())
-            objective.within = numbers(rest, Unit::Length, 1, 1, kMinErrorLimit, kMaxErrorLimit)[0];
-        return objective;
-    }
-    throw UsageError('`' + text + "` is not coverage, path:FROM,TO, localise[:M]" + more);
 }
 
 template <typename Value, std::size_t kCount>
@@ -284,14 +262,10 @@ void ArrangeCommand::addGoalOptions() {
         "--objective", "WHAT",
         [this](const std::string& text) {
             options_.objective = objectives_.find(text);
-            options_.how.objective =
-                options_.objective ? ObjectiveChoice() : readObjective(text, objectives_.words());
+            if (!options_.objective && text != "coverage")
+                throw UsageError('`' + text + "` is not coverage" + objectives_.words());
         },
-        "quantity to maximise: coverage (default); path:FROM,TO, the length seen of the way "
-        "between two zones that is seen least; localise[:M], "
-        "small errors of positions of tags and people, M at most (default 1)" +
-            objectives_.help(),
-        Enters::History);
+        "quantity to maximise: coverage (default)" + objectives_.help(), Enters::History);
     line_.texts("--zone", "ZONE", options_.zones.targets,
                 "cover only this part of the floor: the id of a zone, rect:X,Y,X,Y, "
                 "poly:X,Y;X,Y;..., or door:GLOB[,M] within M of doors (1.5m)",

@@ -10,7 +10,6 @@
 #include "base/number.h"
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
-#include "passage/least_seen_trip.h"
 #include "report/map/map.h"
 #include "report/page/coverage_page.h"
 #include "site/site_page.h"
@@ -177,30 +176,13 @@ ArrangeFindings findingsOf(const ArrangeToolOptions& options, const ArrangeWork&
     return options.groups->judge(judgedSite(work, arrangement, placed, nullptr));
 }
 
-namespace {
-
-/// Judges --objective path and localise in each storey and over all.
-std::optional<SiteObjectives> objectivesIn(const ArrangeWork& work, const SiteScene& site,
-                                           const SiteCoverage& coverage) {
-    const ObjectiveChoice& objective = work.how.objective;
-    if (objective.isCoverage()) return std::nullopt;
-    const bool is_path = objective.of == ObjectiveChoice::Of::Path;
-    return measureObjectives(site, coverage, {&objective.way, is_path ? 1U : 0U},
-                             work.how.redundancy,
-                             is_path ? std::nullopt : std::optional(objective.within));
-}
-
-}  // namespace
-
-std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
-                                             const Arrangement& arrangement) {
-    if (work.how.objective.isCoverage()) return std::nullopt;
-    // Positions are judged by cells; the regions for ways may take longer than a limit of time
-    // allows.
-    CoverageOptions measured = measuredAs(work.how);
-    measured.exact = work.how.objective.of == ObjectiveChoice::Of::Path && arrangement.is_complete;
-    const SiteScene site = placedSite(work, arrangement.sensors);
-    return objectivesIn(work, site, measureSite(site, measured))->all;
+ArrangeFindings figuresOf(const ArrangeToolOptions& options, const ArrangeWork& work,
+                          const Arrangement& arrangement) {
+    ArrangeFindings figures;
+    if (!work.how.objective) return figures;
+    const SiteScene placed = placedSite(work, arrangement.sensors);
+    options.objective->judge(judgedSite(work, arrangement, placed, nullptr), figures);
+    return figures;
 }
 
 namespace {
@@ -234,9 +216,10 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
                        const std::string& command) {
     const SiteScene site = laidOut(work, arrangement, layout);
     const SiteCoverage coverage = measureSite(site, measuredAs(work.how));
-    const std::optional<SiteObjectives> objectives = objectivesIn(work, site, coverage);
-    SiteParts parts = options.groups->judge(judgedSite(work, arrangement, site, &coverage)).parts;
-    if (objectives) addSections<ObjectivesSection>(parts, objectives->storeys, objectives->all);
+    const ArrangedSite judged = judgedSite(work, arrangement, site, &coverage);
+    ArrangeFindings findings = options.groups->judge(judged);
+    if (work.how.objective) options.objective->judge(judged, findings);
+    SiteParts& parts = findings.parts;
     const std::string suffix = suffixOf(options.report_file);
     if (suffix == "json") return siteCoverageJson(site, coverage, parts);
     SitePageInput page{site, coverage, nameOf(work.input), command, targetOf(work, arrangement)};

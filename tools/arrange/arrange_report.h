@@ -9,7 +9,6 @@
 
 #include "arrange/arrange_run.h"
 #include "cli/arrange_group.h"
-#include "report/objective_report.h"
 
 namespace ispace {
 
@@ -33,10 +32,9 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
 void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
                      const Arrangement& arrangement, const Document& layout);
 
-/// Measures --objective path and localise on the written layout, exactly and on the cells of
-/// coverage(1); empty without them.
-std::optional<ObjectiveFigures> objectivesOf(const ArrangeWork& work,
-                                             const Arrangement& arrangement);
+/// Measures an objective with a search of its own on the written layout; empty without one.
+ArrangeFindings figuresOf(const ArrangeToolOptions& options, const ArrangeWork& work,
+                          const Arrangement& arrangement);
 
 /// Returns what groups of extensions find out about the written layout.
 ArrangeFindings findingsOf(const ArrangeToolOptions& options, const ArrangeWork& work,

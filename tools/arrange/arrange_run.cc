@@ -141,11 +141,10 @@ void takeCases(const ArrangeToolOptions& options, ArrangeWork& work) {
 
 /// Returns the site of a room or building, which it owns. \param goals by room
 std::shared_ptr<const ArrangeSite> ownSite(const SiteInput& input, const ArrangeOptions& how,
-                                           std::vector<RoomGoals> goals,
-                                           std::vector<SitePassage> passages = {}) {
+                                           std::vector<RoomGoals> goals) {
     if (!input.isOneRoom()) {
-        const auto building = std::make_shared<const BuildingSite>(
-            input.building, how, std::move(goals), std::move(passages));
+        const auto building =
+            std::make_shared<const BuildingSite>(input.building, how, std::move(goals));
         return {building, &building->site()};
     }
     ArrangeSite site;
@@ -193,16 +192,6 @@ void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
         work.files.insert(work.files.end(), other.files.begin(), other.files.end());
         robust.rooms.push_back({name_of(file), ownSite(other, work.how, {})});
     }
-}
-
-/// Looks up the zones of --objective path, each in its room.
-void takeWay(ArrangeWork& work) {
-    if (work.how.objective.of != ObjectiveChoice::Of::Path) return;
-    const SitePath way = wayIn(work.input, "--objective", work.how.objective.way);
-    work.goals[way.from.storey].way_from = way.from.zone;
-    work.goals[way.to.storey].way_to = way.to.zone;
-    work.passages = way.passages;
-    if (work.input.isOneRoom()) work.how.objective.way = {way.from.zone, way.to.zone};
 }
 
 }  // namespace
@@ -265,8 +254,8 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     takeRooms(options, work);
     takeDemand(options, work);
     takeCases(options, work);
-    takeWay(work);
-    work.site = ownSite(input, work.how, work.goals, work.passages);
+    if (work.how.objective) options.objective->aim(input, work.how);
+    work.site = ownSite(input, work.how, work.goals);
     return work;
 }
 

@@ -18,8 +18,7 @@ struct ArrangeWork {
     SiteInput input;
     std::vector<SensorGroup> groups;
     ArrangeOptions how;
-    std::vector<RoomGoals> goals;       ///< by room
-    std::vector<SitePassage> passages;  ///< of ways through a building
+    std::vector<RoomGoals> goals;  ///< by room
     std::shared_ptr<const ArrangeSite> site;
     std::vector<std::string> files;  ///< for -MD
     std::string places;              ///< the text of --places

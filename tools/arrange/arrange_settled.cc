@@ -122,28 +122,10 @@ void ArrangeCommand::settleRobust() {
 }
 
 void ArrangeCommand::settleObjective() {
-    const ObjectiveChoice& objective = options_.how.objective;
-    if (objective.isCoverage()) return;
-    const auto refuse = [this](std::span<const std::string_view> others) {
-        for (const std::string_view other : others)
-            if (line_.given(std::string(other)))
-                throw UsageError(
-                    "--objective path and localise are goals of their own: leave out " +
-                    std::string(other));
-    };
-    constexpr std::string_view kOther[] = {
-        "--target", "--budget", "--refine",     "--connected",   "--reso",  "--judge",
-        "--proof",  "--shard",  "--resume",     "--robust",      "--crowd", "--curve",
-        "--heat",   "--trace",  "--export-mps", "--alternatives"};
-    constexpr std::string_view kOfFloor[] = {"--zone", "--weight"};
-    constexpr std::string_view kOfTimes[] = {"--redundancy"};
-    refuse(kOther);
-    refuse(options_.groups->ofFloor());
-    if (const auto of_option = objectives_.asked()) refuse(std::vector{of_option->option()});
-    if (objective.of == ObjectiveChoice::Of::Path)
-        refuse(kOfFloor);
-    else
-        refuse(kOfTimes);
+    if (!options_.objective) return;
+    std::vector<std::string_view> others = options_.groups->ofFloor();
+    if (const auto of_option = objectives_.asked()) others.push_back(of_option->option());
+    options_.objective->settle(line_, others, options_.how);
 }
 
 void ArrangeCommand::settleDemand() {
@@ -153,7 +135,7 @@ void ArrangeCommand::settleDemand() {
         throw UsageError("--objective " + std::string(options_.objective->word()) + " and " +
                          std::string(of_option->option()) + " both say what counts: leave out one");
     if (of_option) options_.objective = of_option;
-    if (!options_.objective) return;
+    if (!options_.objective || options_.how.objective) return;
     const std::string name = of_option ? std::string(of_option->option())
                                        : "--objective " + std::string(options_.objective->word());
     std::vector<std::string_view> of_floor = {"--zone",  "--weight", "--robust",

@@ -96,22 +96,6 @@ std::string robustText(const ArrangeOptions& how, const Arrangement& arrangement
            meanText(robust, values) + '\n';
 }
 
-/// Reports an objective other than coverage in metres.
-std::string objectiveText(const ArrangeOptions& how, const Arrangement& arrangement) {
-    constexpr int kDigits = 4;
-    const double whole = *arrangement.whole;
-    if (how.objective.of == ObjectiveChoice::Of::Path)
-        return "arrange: by cells the way from " + printable(how.objective.way.from) + " to " +
-               printable(how.objective.way.to) + " that is seen least is seen for " +
-               formatFixed(*arrangement.value * whole, 2) +
-               " m; no layout of these candidates makes it more than " +
-               formatFixed(arrangement.candidate_bound * whole, 2) + " m\n";
-    return "arrange: by cells the mean error of positions is " +
-           formatFixed((1 - *arrangement.value) * whole, kDigits) + " m, none above " +
-           formatDouble(whole) + " m; no layout of these candidates makes it less than " +
-           formatFixed((1 - arrangement.candidate_bound) * whole, kDigits) + " m\n";
-}
-
 /// Returns a line for each of several rooms.
 std::string roomsText(const Arrangement& arrangement) {
     std::string text;
@@ -181,7 +165,8 @@ std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) 
                 " of these candidates can\n";
     }
     if (arrangement.robust) text += robustText(how, arrangement);
-    if (arrangement.whole) text += objectiveText(how, arrangement);
+    if (how.objective && arrangement.whole)
+        text += "arrange: " + how.objective->finding(arrangement) + '\n';
     if (how.demand)
         if (const std::string finding =
                 how.demand->finding(work.served(arrangement), arrangement.candidate_bound);

@@ -41,7 +41,9 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
         input.digest(),
         std::string(work.how.prover ? work.how.prover->name() : nameOf(work.how.strategy)),
         std::string(nameOf(work.how.prover ? Optimizer::Exact : work.how.search.optimizer)),
-        std::string(work.how.demand ? work.how.demand->name() : work.how.objective.name())};
+        std::string(work.how.demand      ? work.how.demand->name()
+                    : work.how.objective ? work.how.objective->name()
+                                         : "")};
     parts.history.push_back(command.historyLine(input.named));
     const auto document = [&](const Arrangement& found) {
         return !input.isOneRoom()
@@ -79,10 +81,9 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
                                   alternativesText(options.common.output, arrangement));
     for (const ArrangeFindings::Line& line : findings.lines)
         tell(options.common, "arrange", line.text);
-    if (const auto objectives = objectivesOf(work, arrangement);
-        objectives && !options.common.quiet)
-        for (const NamedFigure& figure : namedFigures(*objectives))
-            tell(options.common, "arrange", figure.name + ": " + figure.finding);
+    if (!options.common.quiet)
+        for (const ArrangeFindings::Line& line : figuresOf(options, work, arrangement).lines)
+            tell(options.common, "arrange", line.text);
     const auto asked = static_cast<std::size_t>(work.how.alternatives);
     if (const std::size_t count = arrangement.alternatives.size(); count < asked)
         tell(options.common, "arrange",

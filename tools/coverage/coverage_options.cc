@@ -31,7 +31,7 @@ constexpr const char* kMapOptions[] = {"--to",   "--width", "--color",
 struct Words {
     std::string to, cells_by, color, fans;
     CellWords cells;
-    std::vector<std::string> requirements, paths;
+    std::vector<std::string> requirements;
 };
 
 /// Parses `30` or `30,3`.
@@ -123,9 +123,9 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {
-        "--report", "--material", "--prices",  "--title", "--project", "--client",  "--author",
-        "--logo",   "--paper",    "--compare", "--run",   "--path",    "--localise"};
+    std::vector<const char*> single = {"--report",  "--material", "--prices", "--title",
+                                       "--project", "--client",   "--author", "--logo",
+                                       "--paper",   "--compare",  "--run"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     for (const std::string& option : o.groups->options()) single.push_back(option.c_str());
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
@@ -191,14 +191,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "report by how many sensors robots and people were seen in the run that simrun "
               "--record wrote there, and where sight was lost, in numbers and on the map",
               Enters::BaseName);
-    line.texts("--path", "FROM,TO", words.paths,
-               "report the way between these two zones, over free floor, that sensors see for the "
-               "shortest length, and draw it",
-               Enters::History);
-    line.meters("--localise", o.localise_to, kMinErrorLimit, kMaxErrorLimit,
-                "report the error with which the sensors localise a tag or a person, over the "
-                "floor; in the mean, errors above this and floor without a position count as this",
-                Enters::History);
     o.groups->declare(line);
     line.group("The map");
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
@@ -245,8 +237,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     o.requirements.reserve(words.requirements.size());
     for (const std::string& text : words.requirements)
         if (!o.groups->takesRequirement(text)) o.requirements.push_back(parseRequirement(text));
-    for (const std::string& text : words.paths)
-        o.paths.push_back(ofOption("--path", [&] { return parseWay(text); }));
     o.measure.whole_densities =
         o.groups->wantsWholeDensities() ||
         std::any_of(o.requirements.begin(), o.requirements.end(),

@@ -28,9 +28,7 @@ struct CoverageToolOptions {
     BatchOptions batch;              ///< a list of scenes to report on
     std::string other;               ///< LAYOUT to compare with; "": no comparison
     bool json = false;
-    std::string report;                 ///< file for the report as JSON besides stdout; "": no file
-    std::vector<PathChoice> paths;      ///< of intruders
-    std::optional<double> localise_to;  ///< metres; larger errors of positions count as this
+    std::string report;  ///< file for the report as JSON besides stdout; "": no file
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
     std::string run;    ///< folder of a record of robots and people; "" without

@@ -24,7 +24,6 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "cli/storey_operands.h"
-#include "passage/least_seen_trip.h"
 #include "record/text.h"
 #include "report/coverage_formats.h"
 #include "report/map/depth_shades.h"
@@ -51,7 +50,6 @@ const Storey& storeyOf(const SiteInput& input, std::size_t room) {
 SiteParts SiteResults::parts(const SiteScene& building) const {
     SiteParts parts;
     parts.storeys.resize(coverage.storeys.size());
-    if (objectives_sum) addSections<ObjectivesSection>(parts, objectives, *objectives_sum);
     if (run) addRun(parts, building, *run);
     for (std::size_t i = 0; i < found.parts.storeys.size(); ++i)
         join(parts.storeys[i], found.parts.storeys[i]);
@@ -71,10 +69,6 @@ std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
 void nameInRoom(CoverageToolOptions& options, const SiteInput& input) {
     const auto take = [&input](std::string& zone) { zone = inOwnStorey(input, zone); };
     for (Requirement& requirement : options.requirements) take(requirement.zone);
-    for (PathChoice& way : options.paths) {
-        take(way.from);
-        take(way.to);
-    }
 }
 
 void fitOptions(CoverageToolOptions& options, const SiteInput& input) {
@@ -210,20 +204,6 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteI
     return tried;
 }
 
-namespace {
-
-/// Measures --path through the site, and --localise in each room and over all.
-void measureObjectives(const CoverageToolOptions& options, const SiteInput& input,
-                       SiteResults& results) {
-    if (options.paths.empty() && !options.localise_to) return;
-    SiteObjectives measured =
-        measureObjectives(input.building, results.coverage, options.paths, 1, options.localise_to);
-    results.objectives = std::move(measured.storeys);
-    results.objectives_sum = std::move(measured.all);
-}
-
-}  // namespace
-
 void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
                    std::vector<std::string>& files, SiteResults& results) {
     if (!options.run.empty()) {
@@ -237,7 +217,6 @@ void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
                            options.rules.max_work, warnings);
         for (const std::string& warning : warnings) warn(options.common, "coverage", warning);
     }
-    measureObjectives(options, input, results);
 }
 
 namespace {

@@ -12,7 +12,6 @@
 #include "cli/coverage_group.h"
 #include "cli/site_operands.h"
 #include "coverage/coverage_options.h"
-#include "report/objective_report.h"
 #include "site/site_coverage.h"
 #include "site/site_run_coverage.h"
 
@@ -24,9 +23,7 @@ struct SiteResults {
     std::optional<SiteCoverage> other;  ///< of --compare
     std::optional<SiteRunCoverage> run;
     std::vector<TriedPose> tried;  ///< of --trace
-    std::vector<ObjectiveFigures> objectives;
-    std::optional<ObjectiveFigures> objectives_sum;
-    CoverageFindings found;  ///< of extensions
+    CoverageFindings found;        ///< of extensions
 
     /// Returns the parts of a report that were asked for. They refer to the results.
     [[nodiscard]] SiteParts parts(const SiteScene& building) const;
@@ -35,8 +32,8 @@ struct SiteResults {
 /// Returns the operands, or what a record of --run holds: its scene, or its building.
 std::vector<std::string> operandsOf(const CoverageToolOptions& options);
 
-/// Takes the storey from the zones of requirements and ways of a room that is one: of
-/// `ground/entry` the room has `entry`.
+/// Takes the storey from the zones of requirements of a room that is one: of `ground/entry`
+/// the room has `entry`.
 void nameInRoom(CoverageToolOptions& options, const SiteInput& input);
 
 /// Checks that records, products and traces fit the site, and names zones as nameInRoom(), and the
@@ -54,7 +51,7 @@ void measure(const CoverageToolOptions& options, const SiteInput& input,
 /// another room or building
 std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteInput& input);
 
-/// Measures --run, --path and --localise.
+/// Measures --run.
 void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
                    std::vector<std::string>& files, SiteResults& results);
 

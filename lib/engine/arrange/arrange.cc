@@ -81,8 +81,7 @@ SearchResult find(const CoverageModel& model, Arrangement& result,
         by_number = searchParts(model, progress);
         return by_number.back();
     }
-    for (const Objective& row : objectives())
-        if (row.find != nullptr && row.is_asked(options)) return row.find(model, progress);
+    if (model.objective() != nullptr) return model.objective()->find(progress);
     if (model.isWorstCase()) return searchWorstCase(model.cases(), model.searchOptions(), progress);
     if (!options.target) return search(model.problem(), model.searchOptions(), progress);
     MinimumCostCover cover = minimumCostCover(model.problem(), model.valueFor(*options.target),
@@ -183,17 +182,18 @@ void measure(Arrangement& result, CoverageModel& model) {
         result.is_reached = false;
     const std::vector<CountedView> views =
         model.viewsOf(std::span<const Placement>(result.sensors));
-    if (!options.robust.isAsked() && options.objective.isCoverage() &&
+    if (!options.robust.isAsked() && !options.objective &&
         (!options.indoor_only || !measured.is_same_grid))
         result.value = model.shareOf(std::span<const CountedView>(views));
     result.is_value_by_cells = result.value && options.indoor_only && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
                                !options.robust.isAsked() && !options.cover_rule &&
-                               !options.demand && options.objective.isCoverage();
+                               !options.demand && !options.objective;
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
+    if (model.objective() != nullptr) model.objective()->report(views, result);
     if (options.beam_step) result.value = result.candidate_value;
-    if (!options.objective.isCoverage()) return;
+    if (options.objective) return;
     for (const std::size_t i : idleViews(model, views))
         result.idle.push_back(wholeId(model.site(), result.sensors[i]));
 }
@@ -375,7 +375,7 @@ Arrangement arrangeLimited(const ArrangeSite& site, const std::vector<SensorGrou
     if (share.own && !share.isOwn(Shared::Poses)) return result;
     std::vector<Choice>& chosen = found.best.chosen;
     takeEachOnce(chosen);
-    if (found.best.value > 0 && options.objective.isCoverage()) {
+    if (found.best.value > 0 && !options.objective) {
         model.spreadRedundant(chosen);
         found.best.value = model.isWorstCase() ? worstCase(model.cases(), chosen).value
                                                : ispace::valueOf(problem, chosen);

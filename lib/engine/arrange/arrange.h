@@ -38,6 +38,7 @@
 #include <vector>
 
 #include "arrange/demand.h"
+#include "arrange/layout_objective.h"
 #include "arrange/placement_rules.h"
 #include "arrange/prover.h"
 #include "arrange/robust.h"
@@ -48,7 +49,6 @@
 #include "base/cell_set.h"
 #include "base/error.h"
 #include "base/message.h"
-#include "coverage/least_seen_path.h"
 #include "coverage/target.h"
 #include "scene/scene.h"
 
@@ -98,24 +98,6 @@ struct MountRules {
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
 };
 
-/// The objective of a layout.
-struct ObjectiveChoice {
-    enum class Of {
-        Coverage,
-        Path,      ///< an intruder is seen for the longest way, on the way that is seen least
-        Localise,  ///< the mean error of positions is least
-    };
-    Of of = Of::Coverage;
-    PathChoice way = {};  ///< of Path: ids of two zones
-    double within = 1;    ///< of Localise, metres: larger errors, and no position, count as this
-
-    [[nodiscard]] bool isCoverage() const { return of == Of::Coverage; }
-    /// Returns its word in results; "" for coverage.
-    [[nodiscard]] std::string_view name() const {
-        return of == Of::Path ? "path" : of == Of::Localise ? "localise" : "";
-    }
-};
-
 struct Arrangement;
 
 /// A search, apart from rooms and sensors. The defaults are those of arrange(1).
@@ -137,7 +119,7 @@ struct ArrangeOptions {
     int redundancy = 1;  ///< a cell is covered if this many sensors see it
     bool is_connected = false;
     RobustChoice robust;
-    ObjectiveChoice objective;
+    std::shared_ptr<const LayoutObjective> objective;  ///< null: coverage
     std::vector<UnseenFloor> unseen;
     MakeCoverRule cover_rule;  ///< empty: each sensor covers the cells that it sees
     /// Returns poses of a layout that must not stand, such as those of cameras that see unseen
@@ -237,8 +219,7 @@ struct Arrangement {
     std::optional<double> free_share;    ///< with it: the free floor, as a share of the indoor area
     std::shared_ptr<const Proof> proof;  ///< of ArrangeOptions::prover
 
-    /// With an objective other than coverage, `value` is a share of this many metres: of the
-    /// shortest way between the zones, or of the largest error that counts, which it falls short.
+    /// With ArrangeOptions::objective `value` is a share of this much, in a unit of its own.
     std::optional<double> whole;
 
     /// Of the written poses; the bound is that of the worst case, or of the mean.

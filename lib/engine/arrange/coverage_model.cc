@@ -23,7 +23,6 @@
 
 #include "arrange/beam_cells.h"
 #include "arrange/candidate.h"
-#include "arrange/localise_search.h"
 #include "arrange/objective.h"
 #include "arrange/refine.h"
 #include "arrange/search/problem.h"
@@ -71,8 +70,10 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
     setUnits();
     addRooms();
     if (options.robust.isAsked()) stackCases();
-    if (options.objective.of == ObjectiveChoice::Of::Path) setPaths();
-    if (options.objective.of == ObjectiveChoice::Of::Localise) total_ *= kNoError;
+    if (options.objective) {
+        objective_ = options.objective->searchIn(*this);
+        total_ = objective_->total();
+    }
     const std::vector<std::uint32_t> left = weightsLeft();
     for (Room& room : rooms_) {
         if (room.model == nullptr || room.model->hasPool()) continue;
@@ -248,7 +249,7 @@ bool CoverageModel::joinsRooms() const {
     return (joins(site_) ||
             std::any_of(others.begin(), others.end(),
                         [&](const NamedSite& other) { return joins(*other.site); })) &&
-           !options_.demand && options_.objective.of != ObjectiveChoice::Of::Localise;
+           !options_.demand && (!options_.objective || options_.objective->joinsRooms());
 }
 
 bool CoverageModel::mayStand(const SensorClass& kind, std::size_t room) const {
@@ -611,8 +612,7 @@ double CoverageModel::shareOf(std::span<const CountedView> views) const {
 }
 
 double CoverageModel::shareOf(const std::vector<Choice>& chosen, std::uint64_t value) const {
-    if (areas_.empty() || options_.robust.isAsked() || !options_.objective.isCoverage())
-        return share(value);
+    if (areas_.empty() || options_.robust.isAsked() || options_.objective) return share(value);
     std::vector<CountedView> views;
     for (const Choice& choice : chosen) {
         const SensorType& kind = problem_.kinds[choice.kind];

@@ -30,7 +30,6 @@
 #include "arrange/arrange.h"
 #include "arrange/candidate_generator.h"
 #include "arrange/room_model.h"
-#include "arrange/search/cell_paths.h"
 #include "arrange/search/problem.h"
 #include "arrange/search/worst_case.h"
 #include "arrange/sensor_group.h"
@@ -118,9 +117,8 @@ class CoverageModel {
     /// Returns the values of these sensors in the cases.
     [[nodiscard]] RobustValues robustValuesOf(std::span<const CountedView> views,
                                               std::span<const Placement> sensors) const;
-    /// Returns the length of the least seen way with these sensors and the standing ones, in units
-    /// of kPathUnit. \pre the objective is a path
-    [[nodiscard]] std::uint64_t leastSeen(std::span<const CountedView> views) const;
+    /// Returns the search of ArrangeOptions::objective; null: coverage.
+    [[nodiscard]] const ObjectiveSearch* objective() const { return objective_.get(); }
     /// Returns true if the search maximises the worst case; its values are those of worstCase().
     [[nodiscard]] bool isWorstCase() const {
         const bool is_plain =
@@ -217,8 +215,6 @@ class CoverageModel {
     void stackFailures();
     /// Returns the rooms in a case.
     [[nodiscard]] SiteCase siteIn(std::size_t number) const;
-    /// Sets the ways of an intruder. \throws UnmetError if there is none, or none that can be seen
-    void setPaths();
     void addKinds(Progress& progress);
     /// Sets the regions in which coverage is to be connected: parts().
     void addRegions();
@@ -265,7 +261,6 @@ class CoverageModel {
     std::vector<SensorClass> kinds_;
     int unit_ = 1;  ///< multiplicity of sensors other than receivers
     std::vector<Room> rooms_;
-    CellPaths cell_paths_;
     WorstCaseProblem cases_;
     std::size_t view_cases_ = 0;  ///< cases in which views differ; 0 without
     std::vector<std::shared_ptr<const RoomSight>> case_sights_;
@@ -274,6 +269,7 @@ class CoverageModel {
     std::uint64_t total_ = 0;
     std::vector<double> areas_;  ///< weights of the cells of several rooms, not rounded
     double rounding_ = 0;        ///< share
+    std::unique_ptr<const ObjectiveSearch> objective_;
     std::vector<std::unique_ptr<PosedCandidates>> sets_;
     bool is_complete_ = true;
 };

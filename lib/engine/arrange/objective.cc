@@ -6,9 +6,7 @@
 #include <variant>
 
 #include "arrange/arrange.h"
-#include "arrange/cell_floor.h"
 #include "arrange/coverage_model.h"
-#include "arrange/localise_search.h"
 #include "arrange/search/problem.h"
 #include "scene/sensor/camera.h"
 
@@ -45,22 +43,6 @@ void reportRobust(const CoverageModel& model, std::span<const CountedView> views
                   Arrangement& result) {
     result.robust = model.robustValuesOf(views, result.sensors);
     result.value = model.isWorstCase() ? result.robust->worst : result.robust->mean;
-}
-
-SearchResult findWorstCase(const CoverageModel& model, Progress& progress) {
-    return searchWorstCase(model.cases(), model.searchOptions(), progress);
-}
-
-void reportPath(const CoverageModel& model, std::span<const CountedView> views,
-                Arrangement& result) {
-    result.value = model.share(model.leastSeen(views));
-    result.whole = static_cast<double>(model.cases().shortest) * kPathUnit;
-}
-
-void reportLocalised(const CoverageModel& model, std::span<const CountedView> views,
-                     Arrangement& result) {
-    result.value = model.share(localisedValue(model, views, result.sensors));
-    result.whole = model.options().objective.within;
 }
 
 void reportCost(const CoverageModel& model, std::span<const CountedView> /*views*/,
@@ -107,17 +89,6 @@ constexpr Objective kObjectives[] = {
      .option = "--robust",
      .is_asked = [](Options options) { return options.robust.isAsked(); },
      .report = reportRobust},
-    {.name = "path",
-     .option = "--objective path:",
-     .is_asked = [](Options options) { return options.objective.of == ObjectiveChoice::Of::Path; },
-     .find = findWorstCase,
-     .report = reportPath},
-    {.name = "localise",
-     .option = "--objective localise",
-     .is_asked =
-         [](Options options) { return options.objective.of == ObjectiveChoice::Of::Localise; },
-     .find = searchLocalised,
-     .report = reportLocalised},
     {.name = "cost",
      .option = "--budget",
      .is_asked = [](Options) { return true; },

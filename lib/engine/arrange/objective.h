@@ -30,8 +30,6 @@ struct Objective {
     std::vector<double> (*weights)(const Target&, const ArrangeOptions&) = nullptr;
     /// Limits the region that a sensor covers, before any view is computed; null: no limit.
     void (*limit)(SensorModel&, const ArrangeOptions&) = nullptr;
-    /// Searches for the best layout; null: search() or minimumCostCover() of the problem.
-    SearchResult (*find)(const CoverageModel&, Progress&) = nullptr;
     /// Stores the objective's figures in the result.
     /// \param views of the placed sensors on the search's grid; null: the coverage already is the
     ///        figure
@@ -39,8 +37,7 @@ struct Objective {
                    Arrangement&) = nullptr;
 };
 
-/// Returns the rows: coverage, weights, density, redundancy, rule, demand, robust, path,
-/// localise, cost.
+/// Returns the rows: coverage, weights, density, redundancy, rule, demand, robust, cost.
 std::span<const Objective> objectives();
 
 /// Computes the product of the weights of all requested objectives. O(cells * zones)

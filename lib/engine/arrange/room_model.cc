@@ -34,8 +34,6 @@ RoomGoals goalsOf(const ArrangeOptions& options) {
     goals.places = options.list;
     goals.demand = options.demand;
     goals.case_seed = options.robust.seed;
-    goals.way_from = options.objective.way.from;
-    goals.way_to = options.objective.way.to;
     return goals;
 }
 

@@ -188,7 +188,7 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
 bool isSearchedByParts(const CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     return !model.site().isOneRoom() && model.kinds().size() == 1 && !options.budget &&
-           !options.target && !options.robust.isAsked() && options.objective.isCoverage() &&
+           !options.target && !options.robust.isAsked() && !options.objective &&
            model.parts().size() > 1;
 }
 

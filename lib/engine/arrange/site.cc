@@ -9,7 +9,7 @@ namespace ispace {
 bool RoomGoals::isPlain() const {
     return weights.isUniform() && counts && takes_sensors && keep_out.empty() && keep_in.empty() &&
            unseen.empty() && !cover_rule && forbidden.empty() && places.empty() &&
-           demand == nullptr && crowds.empty() && !case_seed && way_from.empty() && way_to.empty();
+           demand == nullptr && crowds.empty() && !case_seed;
 }
 
 Point3 SiteRoom::inSite(Point3 point) const {

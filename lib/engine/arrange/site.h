@@ -49,8 +49,6 @@ struct RoomGoals {
     /// Of RobustChoice, for a room of several.
     std::optional<std::uint64_t> case_seed = {};
     std::vector<Crowd> crowds = {};  ///< by case
-    /// Of ObjectiveChoice::Of::Path: the zones in this room between which an intruder goes.
-    std::string way_from = {}, way_to = {};
     /// Counts instead of its floor, if the options ask for a demand. Every room then has one.
     std::shared_ptr<const Demand> demand = nullptr;
 
@@ -121,17 +119,6 @@ class SiteSight : public RoomSight {
                                               const CoverageOptions& options) const = 0;
 };
 
-/// Stairs or a lift: a way leads from any of its landings to any other one.
-struct SitePassage {
-    /// Floor of a room where people enter it, in the frame of the room.
-    struct Landing {
-        std::size_t room = 0;
-        Box2 floor = {};
-    };
-    std::string id;
-    std::vector<Landing> landings = {};
-};
-
 /// Rooms, one or several. The cells of all of them are one problem: a sensor covers floor of its
 /// room, and floor of the others that it sees. Cells count by area. A value that is copied cheaply:
 /// scenes are shared.
@@ -139,7 +126,6 @@ struct ArrangeSite {
     std::vector<SiteRoom> rooms;
     /// Of several rooms; null for one alone. Not owned.
     const SiteSight* sight = nullptr;
-    std::vector<SitePassage> passages = {};
 
     [[nodiscard]] bool isOneRoom() const { return rooms.size() == 1 && sight == nullptr; }
 };

@@ -337,16 +337,22 @@ TEST(CommandLine, FindsAnOptionBeforeAGroupThatMerelyHasItsWord) {
 }
 
 TEST(CommandLine, NamesTheExtensionOfAnObjectiveThatTheBuildLacks) {
-    constexpr ObjectiveRow kRows[] = {{"evenness", nullptr, "even"}};
+    constexpr ObjectiveRow kRows[] = {{"evenness", nullptr, "even"}, {"goals", nullptr, "path"}};
     const ObjectiveExtensions objectives("--objective", kRows);
     EXPECT_EQ(objectives.find("coverage"), nullptr);
-    try {
-        static_cast<void>(objectives.find("even"));
-        FAIL();
-    } catch (const UsageError& error) {
-        EXPECT_STREQ(error.what(),
-                     "`even`: it belongs to the extension evenness, which this build lacks");
-    }
+    EXPECT_EQ(objectives.find("pathfinder"), nullptr);
+    const auto refusal = [&objectives](std::string_view word) {
+        try {
+            static_cast<void>(objectives.find(word));
+        } catch (const UsageError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(refusal("even"),
+              "`even`: it belongs to the extension evenness, which this build lacks");
+    EXPECT_EQ(refusal("path:a,b"),
+              "`path:a,b`: it belongs to the extension goals, which this build lacks");
 }
 
 TEST(CommandLine, ListsTheExtensionsOfTheBuildWithItsVersion) {

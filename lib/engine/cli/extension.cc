@@ -14,7 +14,7 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
         names_.push_back(each.name);
         for (const ToolOptions& row : each.options)
             options_.push_back({each.name, row.tool, row.make});
-        if (each.objective != nullptr) objectives_.push_back({each.name, each.objective});
+        for (const auto make : each.objectives) objectives_.push_back({each.name, make});
         if (each.arrange != nullptr) arrange_.push_back({each.name, each.arrange});
         if (each.coverage != nullptr) coverage_.push_back({each.name, each.coverage});
         if (each.record != nullptr) records_.push_back({each.name, each.record});

@@ -42,15 +42,15 @@ struct Extension {
     /// people. It is called once, before the first input is read, by one thread: later the tables
     /// are read without locks.
     void (*add)() = nullptr;
-    std::vector<ToolOptions> options = {};                     ///< at most one for each tool
-    std::unique_ptr<ObjectiveGroup> (*objective)() = nullptr;  ///< of `arrange --objective`
-    std::unique_ptr<ArrangeGroup> (*arrange)() = nullptr;      ///< rules of layouts of `arrange`
-    std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;    ///< of reports of `coverage`
-    std::unique_ptr<RecordGroup> (*record)() = nullptr;        ///< of records of `simrun`
-    std::unique_ptr<ProofGroup> (*proof)() = nullptr;          ///< of `arrange --proof`
-    std::unique_ptr<JudgeGroup> (*judge)() = nullptr;          ///< of runs of `simrun`
-    std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;        ///< another protocol of a run
-    MakeRoleService role = nullptr;                            ///< requests of the protocol
+    std::vector<ToolOptions> options = {};  ///< at most one for each tool
+    std::vector<std::unique_ptr<ObjectiveGroup> (*)()> objectives = {};  ///< of `arrange`
+    std::unique_ptr<ArrangeGroup> (*arrange)() = nullptr;    ///< rules of layouts of `arrange`
+    std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;  ///< of reports of `coverage`
+    std::unique_ptr<RecordGroup> (*record)() = nullptr;      ///< of records of `simrun`
+    std::unique_ptr<ProofGroup> (*proof)() = nullptr;        ///< of `arrange --proof`
+    std::unique_ptr<JudgeGroup> (*judge)() = nullptr;        ///< of runs of `simrun`
+    std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;      ///< another protocol of a run
+    MakeRoleService role = nullptr;                          ///< requests of the protocol
 };
 
 /// What an extension that a build lacks would bring.

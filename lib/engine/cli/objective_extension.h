@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions adds to the objectives of arrange: a word of --objective,
-// options, and the demand that counts instead of the floor. See cli/extension.h.
+// options, and the demand that counts instead of the floor, or a search of its own. See
+// cli/extension.h.
 #pragma once
 
 #include <memory>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/arrange_group.h"
 #include "cli/common_options.h"
 #include "cli/site_operands.h"
 #include "cli/word_extension.h"
@@ -16,8 +18,6 @@
 namespace ispace {
 
 class Demand;
-struct ArrangeOptions;
-struct RoomGoals;
 
 /// An objective of arrange and its options; help() says what the layout maximises. Without one,
 /// arrange covers floor.
@@ -30,12 +30,25 @@ class ObjectiveGroup : public WordGroup {
         std::span<const std::string_view> options = {};  ///< of --zone, --weight, ...
     };
     [[nodiscard]] virtual Counted counted() const { return {}; }
-    /// Makes the demand in each room of a site, all of one class.
+    /// Sets ArrangeOptions::objective, for one with a search of its own, and checks the options
+    /// with it; else there is a demand. \param others options of other groups that say what counts
+    /// \throws UsageError
+    virtual void settle(const CommandLine& /*line*/, std::span<const std::string_view> /*others*/,
+                        ArrangeOptions& /*how*/) const {}
+    /// Looks up what it names in a site. \pre settle() has set an objective \throws UsageError
+    virtual void aim(const SiteInput& /*input*/, ArrangeOptions& /*how*/) const {}
+    /// Measures the written layout. \pre as aim()
+    virtual void judge(const ArrangedSite& /*site*/, ArrangeFindings& /*findings*/) const {}
+    /// Makes the demand in each room of a site, all of one class; empty for an objective with a
+    /// search of its own.
     /// \param goals of the rooms \param files receives those that were read \throws UsageError,
     /// UnmetError, FormatError
     [[nodiscard]] virtual std::vector<std::shared_ptr<const Demand>> demandsIn(
-        const SiteInput& site, std::span<const RoomGoals> goals, const ArrangeOptions& how,
-        const CommonOptions& common, std::vector<std::string>& files) const = 0;
+        const SiteInput& /*site*/, std::span<const RoomGoals> /*goals*/,
+        const ArrangeOptions& /*how*/, const CommonOptions& /*common*/,
+        std::vector<std::string>& /*files*/) const {
+        return {};
+    }
 };
 
 using ObjectiveRow = WordRow<ObjectiveGroup>;

@@ -219,17 +219,6 @@ std::vector<std::string> inOwnStorey(const SiteInput& input,
     return own;
 }
 
-SitePath wayIn(const SiteInput& input, std::string_view option, const PathChoice& way) {
-    if (!input.isOneRoom())
-        return {zoneOfStorey(input.building, option, way.from),
-                zoneOfStorey(input.building, option, way.to), sitePassages(input.building)};
-    SitePath found{{0, inOwnStorey(input, way.from)}, {0, inOwnStorey(input, way.to)}};
-    for (const StoreyZone* at : {&found.from, &found.to})
-        static_cast<void>(ofOption(std::string(option),
-                                   [&] { return readZone(at->zone, input.only().environment); }));
-    return found;
-}
-
 void forEachRoomOf(const SiteInput& input, std::string_view option, const std::string& text,
                    const std::function<void(std::size_t room, const std::string& text)>& read) {
     if (input.isOneRoom()) return read(0, inOwnStorey(input, text));

@@ -19,7 +19,6 @@
 #include "cli/storey_operands.h"
 #include "env/zone.h"
 #include "geom/pose.h"
-#include "passage/least_seen_trip.h"
 #include "record/record.h"
 #include "scene/findings/findings.h"
 #include "scene/scene.h"
@@ -145,14 +144,6 @@ void forEachRoomOf(const SiteInput& input, std::string_view option, const std::s
 /// rooms, stay.
 std::string inOwnStorey(const SiteInput& input, const std::string& text);
 std::vector<std::string> inOwnStorey(const SiteInput& input, const std::vector<std::string>& texts);
-
-/// The zones between which a way leads; of a room alone in its only storey.
-struct SitePath {
-    StoreyZone from, to;
-    std::vector<SitePassage> passages = {};  ///< of a building
-};
-/// Finds these zones. \throws UsageError as zoneOfStorey()
-SitePath wayIn(const SiteInput& input, std::string_view option, const PathChoice& way);
 
 /// \throws UsageError saying that an option needs one room, with the storeys to choose from;
 /// accepts "" and a room alone

@@ -20,8 +20,13 @@ namespace ispace {
 class WordGroup {
   public:
     virtual ~WordGroup() = default;
-    /// Returns the word that asks for it ("track"); "" if an option of its own does.
+    /// Returns the word that asks for it, as help shows it ("track", "path:FROM,TO"); "" if an
+    /// option of its own does.
     [[nodiscard]] virtual std::string_view word() const = 0;
+    /// Returns true if the text asks for it, and keeps what follows the word. \throws UsageError
+    [[nodiscard]] virtual bool takes(std::string_view text) {
+        return !text.empty() && text == word();
+    }
     /// Returns that option ("--presence"), and whether it is given.
     [[nodiscard]] virtual std::string_view option() const { return ""; }
     [[nodiscard]] virtual bool isAsked() const { return false; }
@@ -91,13 +96,13 @@ class WordExtensions {
             member.options.assign(names.begin() + static_cast<std::ptrdiff_t>(before), names.end());
         }
     }
-    /// Returns null for another word. \throws UsageError for one that this build lacks, with its
-    /// extension
+    /// Returns the group that takes the text; null for another word. \throws UsageError for one
+    /// that this build lacks, with its extension
     [[nodiscard]] std::shared_ptr<Group> find(std::string_view word) const {
         for (const Member& member : members_)
-            if (!word.empty() && member.group->word() == word) return member.group;
+            if (member.group->takes(word)) return member.group;
         for (const WordRow<Group>& row : missing_)
-            if (row.missing == word)
+            if (row.missing == word.substr(0, word.find(':')))
                 throw UsageError('`' + std::string(word) + "`: it belongs to the extension " +
                                  std::string(row.extension) + ", which this build lacks");
         return nullptr;

@@ -25,7 +25,7 @@ double highestSite(const SiteScene& building, const ArrangeOptions& options) {
 }  // namespace
 
 BuildingSite::BuildingSite(const SiteScene& building, const ArrangeOptions& options,
-                           std::vector<RoomGoals> goals, std::vector<SitePassage> passages)
+                           std::vector<RoomGoals> goals)
     : building_(building),
       plane_(options.plane),
       highest_(highestSite(building_, options)),
@@ -44,7 +44,6 @@ BuildingSite::BuildingSite(const SiteScene& building, const ArrangeOptions& opti
                                hasFloor(*floors[i])});
     }
     site_.sight = this;
-    site_.passages = std::move(passages);
 }
 
 namespace {

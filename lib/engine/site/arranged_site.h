@@ -24,9 +24,9 @@ namespace ispace {
 ///     const Arrangement found = arrange(rooms.site(), groups, options, progress);
 class BuildingSite final : public SiteSight {
   public:
-    /// \param goals by storey; empty: all floor \param passages of ObjectiveChoice::Of::Path
+    /// \param goals by storey; empty: all floor
     BuildingSite(const SiteScene& building, const ArrangeOptions& options,
-                 std::vector<RoomGoals> goals = {}, std::vector<SitePassage> passages = {});
+                 std::vector<RoomGoals> goals = {});
     BuildingSite(const BuildingSite&) = delete;
     BuildingSite& operator=(const BuildingSite&) = delete;
 

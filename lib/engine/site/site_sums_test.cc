@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "coverage/localisation.h"
 #include "site/coupling.h"
 #include "site/site_coverage.h"
 #include "site/storey_people.h"
@@ -68,24 +67,6 @@ TEST(SiteCoverage, SumsHaveEachSensorOnce) {
     EXPECT_TRUE(std::all_of(sum.unseen.begin(), sum.unseen.end(), [](const UncoveredSpot& spot) {
         return spot.room == "g" || spot.room == "u";
     }));
-}
-
-TEST(LocalisedOver, CountsCellsByTheirArea) {
-    const SiteScene building = house();
-    const SiteCoverage coverage = measureSite(building, {});
-    std::vector<Localisation> rooms;
-    for (std::size_t i = 0; i < 2; ++i)
-        rooms.push_back(localise(*coverage.floors[i], coverage.storeys[i], 0.5));
-    const Localisation all = localisedOver(rooms, coverage.storeys);
-    const auto area = [&](std::size_t i) {
-        const Target& target = coverage.storeys[i].target;
-        return static_cast<double>(target.indoor.count()) * target.grid.cellArea();
-    };
-    EXPECT_NEAR(*all.localised * (area(0) + area(1)),
-                *rooms[0].localised * area(0) + *rooms[1].localised * area(1), 1e-9);
-    EXPECT_NEAR(*all.mean * (area(0) + area(1)),
-                *rooms[0].mean * area(0) + *rooms[1].mean * area(1), 1e-9);
-    EXPECT_GE(*all.share_within, std::min(*rooms[0].share_within, *rooms[1].share_within));
 }
 
 TEST(StoreyPeople, AreSpreadByFreeFloor) {

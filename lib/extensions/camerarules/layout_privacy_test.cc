@@ -31,7 +31,7 @@ Searched searched(const SiteScene& building, const std::vector<SensorSpec>& sens
     for (const auto& scene : building.scenes) rooms.push_back(&scene->environment);
     askPrivacy(kRules, rooms, options, goals);
     Searched result{arrangedIn(building, sensors, options, goals), {}};
-    const BuildingSite site(building, options, std::move(goals), {});
+    const BuildingSite site(building, options, std::move(goals));
     result.privacy = measurePrivacy(site.site(), result.arranged.groups, result.arranged.found,
                                     options.plane, kRules)
                          .results;

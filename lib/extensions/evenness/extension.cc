@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension evenness() { return {.name = "evenness", .objective = evenness::makeEvenObjective}; }
+Extension evenness() { return {.name = "evenness", .objectives = {evenness::makeEvenObjective}}; }
 
 }  // namespace ispace::extension

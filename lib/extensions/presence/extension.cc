@@ -6,7 +6,7 @@ namespace ispace::extension {
 
 Extension presence() {
     return {.name = "presence",
-            .objective = presence::makePresenceObjective,
+            .objectives = {presence::makePresenceObjective},
             .coverage = presence::makePresence};
 }
 

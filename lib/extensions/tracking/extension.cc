@@ -4,6 +4,6 @@
 
 namespace ispace::extension {
 
-Extension tracking() { return {.name = "tracking", .objective = tracking::makeTrackObjective}; }
+Extension tracking() { return {.name = "tracking", .objectives = {tracking::makeTrackObjective}}; }
 
 }  // namespace ispace::extension

@@ -17,7 +17,7 @@ namespace ispace {
 
 namespace {
 
-using Verdict = HeldViews::Verdict;
+using HeldVerdict = HeldViews::Verdict;
 
 /// By which a bin is wider on either side, in bins: more than the errors of find().
 constexpr double kDilation = 0.02;
@@ -39,15 +39,16 @@ std::pair<Vec2, Vec2> boxAround(Interval ring, Interval angle) {
 
 /// Decides for all points of a bin. Bins at the edge of a view are split: boxes are larger than
 /// their part of a ring.
-Verdict verdictOf(const HeldViews& view, Point3 foot, Interval radii, Interval angles, int splits) {
+HeldVerdict verdictOf(const HeldViews& view, Point3 foot, Interval radii, Interval angles,
+                      int splits) {
     const auto [middle, half] = boxAround(radii, angles);
-    const Verdict whole = view.decide({foot.x + middle.x, foot.y + middle.y, foot.z}, half, 1);
+    const HeldVerdict whole = view.decide({foot.x + middle.x, foot.y + middle.y, foot.z}, half, 1);
     if (whole.unsure == 0 || splits == 0) return whole;
     const double radius = (radii.low + radii.high) / 2, angle = (angles.low + angles.high) / 2;
     bool is_held = true, is_out = true;
     for (const Interval part : {Interval{radii.low, radius}, Interval{radius, radii.high}})
         for (const Interval of : {Interval{angles.low, angle}, Interval{angle, angles.high}}) {
-            const Verdict one = verdictOf(view, foot, part, of, splits - 1);
+            const HeldVerdict one = verdictOf(view, foot, part, of, splits - 1);
             is_held = is_held && one.held != 0;
             is_out = is_out && (one.held | one.unsure) == 0;
             if (!is_held && !is_out) return {0, 1};
@@ -80,7 +81,7 @@ TurnedViews::TurnedViews(const FieldOfView& ahead, std::span<const Angle> headin
     const double ring_width = 1 / static_cast<double>(rings_per_metre_);
     const HeldViews view({&ahead, 1});
     const Point3 foot{ahead.frame.origin.x, ahead.frame.origin.y, plane};
-    const Verdict unknown{0, ~std::uint64_t{0} >> (HeldViews::kMax - headings.size())};
+    const HeldVerdict unknown{0, ~std::uint64_t{0} >> (HeldViews::kMax - headings.size())};
     verdicts_ = {unknown};
     std::map<std::pair<std::uint64_t, std::uint64_t>, std::uint16_t> numbers;
     // A heading turns a sector by whole sectors, or onto two of them.
@@ -107,23 +108,23 @@ TurnedViews::TurnedViews(const FieldOfView& ahead, std::span<const Angle> headin
                          {(sector - kDilation) * kSector, (sector + sectors + kDilation) * kSector},
                          splits);
     };
-    std::array<Verdict, kSectors> ahead_of{};
-    std::array<Verdict, kSectors / kBlockSectors> blocks{};
+    std::array<HeldVerdict, kSectors> ahead_of{};
+    std::array<HeldVerdict, kSectors / kBlockSectors> blocks{};
     for (int ring = 0; ring < kRings; ++ring) {
         if (ring % kBlockRings == 0)
             for (int i = 0; i < kSectors / kBlockSectors; ++i)
                 blocks[static_cast<std::size_t>(i)] =
                     verdict_of(ring, kBlockRings, i * kBlockSectors, kBlockSectors, 0);
         for (int sector = 0; sector < kSectors; ++sector) {
-            const Verdict& block = blocks[static_cast<std::size_t>(sector / kBlockSectors)];
+            const HeldVerdict& block = blocks[static_cast<std::size_t>(sector / kBlockSectors)];
             ahead_of[static_cast<std::size_t>(sector)] =
                 block.unsure == 0 ? block : verdict_of(ring, 1, sector, 1, kSplits);
         }
         for (std::size_t sector = 0; sector < kSectors; ++sector) {
-            Verdict all;
+            HeldVerdict all;
             for (std::size_t k = 0; k < turns.size(); ++k) {
-                const Verdict& one = ahead_of[(sector + turns[k].first) % kSectors];
-                const Verdict& other = ahead_of[(sector + turns[k].second) % kSectors];
+                const HeldVerdict& one = ahead_of[(sector + turns[k].first) % kSectors];
+                const HeldVerdict& other = ahead_of[(sector + turns[k].second) % kSectors];
                 const std::uint64_t bit = std::uint64_t{1} << k;
                 if ((one.held & other.held) != 0)
                     all.held |= bit;
@@ -169,7 +170,7 @@ ISPACE_SIMD_CLONES void findBins(const Bins& bins, float first, float apart, flo
 
 }  // namespace
 
-void TurnedViews::find(double x, double step, double y, std::span<const Verdict*> row) const {
+void TurnedViews::find(double x, double step, double y, std::span<const HeldVerdict*> row) const {
     const Bins bins{rings_per_metre_, kRings, kSectors};
     std::array<std::int32_t, kBlock> places;  // NOLINT: filled by blocks
     const auto from = static_cast<float>(x), apart = static_cast<float>(step);

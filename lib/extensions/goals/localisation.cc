@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/localisation.h"
+#include "extensions/goals/localisation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "scene/sensor/ultrasound.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 void SpotInformation::add(const Sensor& sensor, const SpaceInformation& information) {
     if (sensor.is<Uwb>()) {
@@ -109,4 +109,4 @@ Localisation localisedOver(std::span<const Localisation> rooms,
     return result;
 }
 
-}  // namespace ispace
+}  // namespace ispace::goals

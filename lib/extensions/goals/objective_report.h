@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Ways that are seen least and errors of positions, as a section of the report of coverage.
 #pragma once
 
 #include <memory>
@@ -7,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "coverage/least_seen_path.h"
-#include "coverage/localisation.h"
+#include "extensions/goals/least_seen_path.h"
+#include "extensions/goals/localisation.h"
 #include "report/report_section.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 /// Results of --path and --localise.
 struct ObjectiveFigures {
@@ -29,10 +30,10 @@ struct NamedFigure {
 std::vector<NamedFigure> namedFigures(const ObjectiveFigures& figures);
 
 /// Ways that are seen least, and errors of positions: members `paths` and `localisation`, a line
-/// for each figure, and the ways on the map.
+/// for each figure, and the ways on the map. It owns the figures.
 class ObjectivesSection final : public ReportSection {
   public:
-    explicit ObjectivesSection(const ObjectiveFigures& figures);
+    explicit ObjectivesSection(ObjectiveFigures figures);
     ~ObjectivesSection() override;
     [[nodiscard]] std::string_view name() const override { return "objectives"; }
     [[nodiscard]] int rank() const override { return 20; }
@@ -42,8 +43,8 @@ class ObjectivesSection final : public ReportSection {
     [[nodiscard]] const MapLayer* mapLayer() const override;
 
   private:
-    const ObjectiveFigures& figures_;
+    ObjectiveFigures figures_;
     std::unique_ptr<const MapLayer> layer_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::goals

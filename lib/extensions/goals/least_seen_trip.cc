@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Dijkstra's algorithm over the two zones and all landings, by the length that is seen, then by the
 // length; edges are ways on a storey, computed once each, and passages, which are not seen.
-#include "passage/least_seen_trip.h"
+#include "extensions/goals/least_seen_trip.h"
 
 #include <algorithm>
 #include <limits>
@@ -13,15 +13,10 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/zone.h"
-#include "passage/storey_paths.h"
-#include "scene/bodies.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 namespace {
-
-/// Half the edge of the floor at a landing, and the height of the intruder, metres.
-constexpr double kLanding = 0.3, kHeight = 1.75;
 
 /// A zone at an end of the way, or the floor before a stop.
 struct Stop {
@@ -156,22 +151,6 @@ StoreyZone zoneOfStorey(const SiteScene& building, std::string_view option,
     return {found.front(), named.text};
 }
 
-std::vector<SitePassage> sitePassages(const SiteScene& building) {
-    const std::vector<StoreyLink> links = passagesOf(building);
-    std::vector<SitePassage> passages;
-    passages.reserve(links.size());
-    for (const StoreyLink& link : links) passages.push_back({link.id, {}});
-    if (links.empty()) return passages;
-    const StoreyPaths ways(building, links, {humanRadius(kHeight), kHeight});
-    for (const Landing& landing : ways.landings()) {
-        const Point2 at = landing.at.position;
-        passages[landing.passage].landings.push_back(
-            {landing.storey,
-             {{at.x - kLanding, at.y - kLanding}, {at.x + kLanding, at.y + kLanding}}});
-    }
-    return passages;
-}
-
 LeastSeenTrip findLeastSeenTrip(const SiteScene& building, const SiteCoverage& coverage,
                                 const PathChoice& of, int times) {
     if (building.isRoomAlone()) {
@@ -206,4 +185,4 @@ SiteObjectives measureObjectives(const SiteScene& building, const SiteCoverage& 
     return figures;
 }
 
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/least_exposure.h"
+#include "extensions/goals/least_exposure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 namespace {
 
@@ -298,4 +298,4 @@ std::optional<ExposedPath> leastExposedPath(const FloorSight& floor, std::span<c
     return ExposureSearch(floor, hidden, starts, goals).run();
 }
 
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/localisation.h"
+#include "extensions/goals/localisation.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::goals {
 namespace {
 
 Localisation localisedIn(const std::string& lines, double within = 1) {
@@ -93,4 +93,4 @@ TEST(Localisation, AFurtherSensorNeverRaisesAnError) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/kernel/coverage: ways over floor of which some is hidden.
+// Ways over floor of which some is hidden: the least length outside hidden regions.
+//
+// Exact up to rounding, by a finite graph of the pieces that such a way can have; it knows polygons
+// alone, neither sensors nor rooms.
+//
+//     const FloorSight floor(free_regions, 1e-6);
+//     if (const auto way = leastExposedPath(floor, hidden, starts, goals)) print(way->exposed);
 #pragma once
 
 #include <cstddef>
@@ -11,7 +17,7 @@
 #include "geom/point.h"
 #include "geom/polygon.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 /// Lines of sight within regions, their boundaries included.
 class FloorSight {
@@ -71,4 +77,4 @@ std::optional<ExposedPath> leastExposedPath(const FloorSight& floor, std::span<c
                                             const std::vector<bool>& starts,
                                             const std::vector<bool>& goals);
 
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -19,7 +19,7 @@
 #include "scene/scene.h"
 #include "sense/dilution.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 /// The information of all sensors about one spot of the floor.
 struct SpotInformation {
@@ -65,4 +65,4 @@ Localisation localise(const Scene& scene, const Coverage& coverage, double withi
 Localisation localisedOver(std::span<const Localisation> rooms,
                            std::span<const Coverage> coverages);
 
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/least_seen_path.h"
+#include "extensions/goals/least_seen_path.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "env/level.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::goals {
 namespace {
 
 /// A corridor of 12 by 2 m with a zone of 1 m at either end.
@@ -251,4 +251,4 @@ TEST(LeastSeenPath, LeadsRoundWallsWithoutThickness) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/least_seen_path.h"
+#include "extensions/goals/least_seen_path.h"
 
 #include <algorithm>
 #include <span>
@@ -7,13 +7,13 @@
 
 #include "base/error.h"
 #include "base/message.h"
-#include "coverage/least_exposure.h"
 #include "coverage/metrics.h"
 #include "env/level.h"
 #include "env/zone.h"
+#include "extensions/goals/least_exposure.h"
 #include "geom/tolerance.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 namespace {
 
@@ -156,4 +156,4 @@ LeastSeenPath findLeastSeenPath(const Scene& scene, const Coverage& coverage, co
     return way;
 }
 
-}  // namespace ispace
+}  // namespace ispace::goals

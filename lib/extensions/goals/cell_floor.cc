@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/cell_floor.h"
+#include "extensions/goals/cell_floor.h"
 
 #include <cmath>
 #include <cstdint>
@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "arrange/coverage_model.h"
-#include "arrange/search/case_values.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "env/level.h"
@@ -17,7 +15,7 @@
 #include "geom/predicates.h"
 #include "geom/spatial_index.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 namespace {
 
@@ -159,43 +157,4 @@ std::size_t addFloor(const Environment& environment, const Target& target, CellP
     return first;
 }
 
-void CoverageModel::setPaths() {
-    const PathChoice& way = options_.objective.way;
-    const std::string name = "between " + printable(way.from) + " and " + printable(way.to);
-    const std::size_t all = problem_.cells();
-    cell_paths_.from = cell_paths_.to = CellSet(all);
-    for (std::size_t i = 0; i < rooms_.size(); ++i) {
-        if (rooms_[i].model == nullptr) continue;
-        const RoomModel& model = *rooms_[i].model;
-        const Environment& room = model.scene().environment;
-        const std::size_t first = addFloor(room, model.target(), cell_paths_);
-        const auto add = [&](const std::string& zone, CellSet& cells) {
-            if (!zone.empty()) cells |= freeCellsOf(room, model.target(), zone, first, all);
-        };
-        add(site_.rooms[i].goals.way_from, cell_paths_.from);
-        add(site_.rooms[i].goals.way_to, cell_paths_.to);
-    }
-    for (const SitePassage& passage : site_.passages) {
-        CellSet& cells = cell_paths_.passages.emplace_back(all);
-        for (const auto& [room, floor] : passage.landings)
-            if (rooms_[room].model != nullptr)
-                cells |= landingCellsOf(rooms_[room].model->scene().environment,
-                                        rooms_[room].model->target(), floor,
-                                        cellsOfRoom(room).first, all);
-    }
-    if (!cell_paths_.exist())
-        throw UnmetError("no way " + name + " leads over free cells (--cell M makes them smaller)");
-    cases_.ways = &cell_paths_;
-    cases_.blocks = {{0, problem_.cells()}};
-    cases_.shortest = cell_paths_.leastSeen([](std::uint32_t) { return true; }).seen;
-    if (cases_.shortest == 0) throw UnmetError("the zones touch: a way " + name + " is never seen");
-    total_ = cases_.shortest;
-}
-
-std::uint64_t CoverageModel::leastSeen(std::span<const CountedView> views) const {
-    std::vector<SensorCells> cells;
-    for (const CountedView& view : views) cells.push_back({&view.cells, view.multiplicity});
-    return CaseValues(cases_, cells).worst().value;
-}
-
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -2,17 +2,19 @@
 // Tests the search for sensors that localise on the storeys of a building.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "coverage/localisation.h"
+#include "extensions/goals/localisation.h"
+#include "extensions/goals/localise_search.h"
 #include "scene/placement_schemas.h"
 #include "site/site_coverage.h"
 #include "support/test_arrange_building.h"
 
-namespace ispace {
+namespace ispace::goals {
 namespace {
 
 SiteScene twoStoreys() {
@@ -51,7 +53,7 @@ SensorSpec preciseLasers(int count) {
 TEST(BuildingLocalise, ValuesAreThoseOfCoverageAndNoSplitIsBetterThanTheBound) {
     const SiteScene building = twoStoreys();
     ArrangeOptions options = coarse();
-    options.objective = {.of = ObjectiveChoice::Of::Localise, .within = 0.2};
+    options.objective = std::make_shared<const LocaliseObjective>(0.2);
     const ArrangedBuilding result = arrangedIn(building, {preciseLasers(2)}, options);
     ASSERT_TRUE(result.found.value);
     EXPECT_EQ(result.found.whole, 0.2);
@@ -75,5 +77,29 @@ TEST(BuildingLocalise, ValuesAreThoseOfCoverageAndNoSplitIsBetterThanTheBound) {
     EXPECT_GE(result.found.bound, *result.found.value);
 }
 
+TEST(LocalisedOver, CountsCellsByTheirArea) {
+    const SiteScene building =
+        makeSiteScene(readBuilding("- storey: {id: g, records: [{ispace: {size: 6 x 5}}, "
+                                   "{laser: {id: a, at: [-2.5, -2, 1], range: 4}}]}\n"
+                                   "- storey: {id: u, z: 3, records: [{ispace: {size: 4 x 3}}, "
+                                   "{laser: {id: b, at: [1, 1, 1], heading: -120, range: 3}}]}\n",
+                                   "house.yaml", {}),
+                      {}, {});
+    const SiteCoverage coverage = measureSite(building, {});
+    std::vector<Localisation> rooms;
+    for (std::size_t i = 0; i < 2; ++i)
+        rooms.push_back(localise(*coverage.floors[i], coverage.storeys[i], 0.5));
+    const Localisation all = localisedOver(rooms, coverage.storeys);
+    const auto area = [&](std::size_t i) {
+        const Target& target = coverage.storeys[i].target;
+        return static_cast<double>(target.indoor.count()) * target.grid.cellArea();
+    };
+    EXPECT_NEAR(*all.localised * (area(0) + area(1)),
+                *rooms[0].localised * area(0) + *rooms[1].localised * area(1), 1e-9);
+    EXPECT_NEAR(*all.mean * (area(0) + area(1)),
+                *rooms[0].mean * area(0) + *rooms[1].mean * area(1), 1e-9);
+    EXPECT_GE(*all.share_within, std::min(*rooms[0].share_within, *rooms[1].share_within));
+}
+
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::goals

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/arrange: ways over the free cells of a target.
+// Ways over the free cells of a target: the graph in which arrange looks for ways of an intruder.
+//
+// Lengths are whole numbers of kPathUnit, so that sums do not depend on their order. O(cells), and
+// a test against the walls near each step.
+//
+//     CellPaths ways;
+//     const std::size_t first = addFloor(environment, target, ways);
+//     ways.from = freeCellsOf(environment, target, "entrance", first, target.grid.size());
 #pragma once
 
 #include <cstddef>
@@ -11,7 +18,7 @@
 #include "env/environment.h"
 #include "geom/point.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 /// Unit of the lengths of ways, metres.
 constexpr double kPathUnit = 1e-4;
@@ -33,4 +40,4 @@ CellSet freeCellsOf(const Environment& environment, const Target& target, const 
 CellSet landingCellsOf(const Environment& environment, const Target& target, const Box2& landing,
                        std::size_t first, std::size_t all);
 
-}  // namespace ispace
+}  // namespace ispace::goals

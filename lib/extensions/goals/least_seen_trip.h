@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The way of an intruder through a building that sensors see least.
+// lib/extensions/goals: ways of intruders that sensors see least, errors of positions, and layouts
+// of arrange for both. Here the ways through a building.
 //
 // Exact for the regions of the coverage, as findLeastSeenPath() is: no way over floors and the
 // landings of stairs and lifts is seen for less, if all views are known exactly.
@@ -16,13 +17,13 @@
 #include <string_view>
 #include <vector>
 
-#include "arrange/site.h"
-#include "coverage/least_seen_path.h"
-#include "report/objective_report.h"
+#include "extensions/goals/least_seen_path.h"
+#include "extensions/goals/objective_report.h"
+#include "passage/site_passages.h"
 #include "site/site_coverage.h"
 #include "site/site_scene.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 /// A way over the floors of storeys, between which it takes stairs and lifts.
 struct LeastSeenTrip {
@@ -60,9 +61,6 @@ struct StoreyZone {
 StoreyZone zoneOfStorey(const SiteScene& building, std::string_view option,
                         const std::string& text);
 
-/// Returns the stairs and lifts between the landings of which such ways lead.
-std::vector<SitePassage> sitePassages(const SiteScene& building);
-
 /// Figures of objectives on each storey, and of the building.
 struct SiteObjectives {
     std::vector<ObjectiveFigures> storeys;
@@ -74,4 +72,4 @@ SiteObjectives measureObjectives(const SiteScene& building, const SiteCoverage& 
                                  std::span<const PathChoice> ways, int times,
                                  std::optional<double> localise_to);
 
-}  // namespace ispace
+}  // namespace ispace::goals

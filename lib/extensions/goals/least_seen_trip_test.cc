@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "passage/least_seen_trip.h"
+#include "extensions/goals/least_seen_trip.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,13 @@
 
 #include "arrange/arrange.h"
 #include "base/error.h"
+#include "extensions/goals/path_objective.h"
 #include "scene/placement_schemas.h"
 #include "site/site_scene.h"
 #include "site/storeys.h"
 #include "support/test_arrange_building.h"
 
-namespace ispace {
+namespace ispace::goals {
 namespace {
 
 /// Two storeys of 12 m by 8 m. The zone `a` lies in the west below, `b` in the west above.
@@ -122,15 +123,12 @@ ArrangedBuilding guarded(const SiteScene& building, int count, Optimizer optimiz
     options.density = {2, 2, 4};
     options.cells = CellSize{0.2};
     options.search.optimizer = optimizer;
-    options.objective.of = ObjectiveChoice::Of::Path;
-    options.objective.way = {"g/a", "u/b"};
-    goals[0].way_from = "a";
-    goals[1].way_to = "b";
+    options.objective = std::make_shared<const PathObjective>(
+        PathChoice{"g/a", "u/b"}, StoreyZone{0, "a"}, StoreyZone{1, "b"}, sitePassages(building));
     Record record(*sceneSchemas().find("laser"));
     record.set("range", Tuple{4});
     record.set("fov", fov);
-    return arrangedIn(building, {{record, count}}, options, std::move(goals),
-                      sitePassages(building));
+    return arrangedIn(building, {{record, count}}, options, std::move(goals));
 }
 
 double seenOn(const SiteScene& building) { return *tripIn(building, {"g/a", "u/b"}).whole.seen; }
@@ -187,4 +185,4 @@ TEST(LeastSeenLayout, NeedsAWay) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::goals

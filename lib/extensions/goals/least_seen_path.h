@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The way of an intruder that sensors see least.
+// The way of an intruder over the floor of one room that sensors see for the least length.
+//
+// Exact for the regions of the coverage, on which see leastExposedPath(); a way through a building
+// is findLeastSeenTrip(). Deterministic. Costs an overlay of the free floor, the views and the
+// zones, and lines of sight between corners of unseen floor.
+//
+//     const LeastSeenPath way = findLeastSeenPath(scene, coverage, parseWay("entrance,vault"));
+//     if (way.exists && way.seen) print(*way.seen, way.length);     // metres
 #pragma once
 
 #include <optional>
@@ -11,7 +18,7 @@
 #include "env/environment.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 /// The zones between which an intruder goes.
 struct PathChoice {
@@ -46,4 +53,4 @@ struct LeastSeenPath {
 LeastSeenPath findLeastSeenPath(const Scene& scene, const Coverage& coverage, const PathChoice& of,
                                 int times = 1);
 
-}  // namespace ispace
+}  // namespace ispace::goals

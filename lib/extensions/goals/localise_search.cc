@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/localise_search.h"
+#include "extensions/goals/localise_search.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -14,10 +14,16 @@
 #include <set>
 #include <utility>
 
-#include "coverage/localisation.h"
+#include "arrange/arrange.h"
+#include "arrange/coverage_model.h"
+#include "arrange/search/search.h"
+#include "arrange/sensor_group.h"
+#include "base/error.h"
+#include "base/number.h"
+#include "extensions/goals/localisation.h"
 #include "sense/dilution.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 namespace {
 
@@ -89,10 +95,10 @@ class Grace {
 
 class LocaliseSearch {
   public:
-    explicit LocaliseSearch(const CoverageModel& model)
+    LocaliseSearch(const CoverageModel& model, double limit)
         : model_(model),
           problem_(model.problem()),
-          limit_(model.options().objective.within),
+          limit_(limit),
           plane_(model.options().plane),
           standing_(problem_.cells()) {
         std::vector<SiteSensor> sensors;
@@ -371,19 +377,8 @@ class LocaliseSearch {
     Spots standing_;
 };
 
-}  // namespace
-
-std::uint64_t localisedValue(const CoverageModel& model, std::span<const CountedView> views,
-                             std::span<const Placement> sensors) {
-    const LocaliseSearch search(model);
-    Spots spots = search.standing();
-    for (std::size_t i = 0; i < views.size(); ++i)
-        search.add(sensorOf(model.groups(), sensors[i]), views[i].cells, spots);
-    return search.valueOf(spots);
-}
-
-SearchResult searchLocalised(const CoverageModel& model, Progress& progress) {
-    const LocaliseSearch search(model);
+SearchResult searchLocalised(const CoverageModel& model, double limit, Progress& progress) {
+    const LocaliseSearch search(model, limit);
     constexpr std::chrono::milliseconds kForBounds(300);
     const Grace grace(progress, kForBounds);
     // Of some sites first, for the case that there is no time for all, nor for bounds.
@@ -412,4 +407,42 @@ SearchResult searchLocalised(const CoverageModel& model, Progress& progress) {
     return result;
 }
 
-}  // namespace ispace
+class LocaliseIn final : public ObjectiveSearch {
+  public:
+    LocaliseIn(const CoverageModel& model, double within) : model_(model), within_(within) {}
+
+    [[nodiscard]] std::uint64_t total() const override {
+        return model_.problem().totalWeight() * kNoError;
+    }
+    [[nodiscard]] SearchResult find(Progress& progress) const override {
+        return searchLocalised(model_, within_, progress);
+    }
+    void report(std::span<const CountedView> views, Arrangement& result) const override {
+        const LocaliseSearch search(model_, within_);
+        Spots spots = search.standing();
+        for (std::size_t i = 0; i < views.size(); ++i)
+            search.add(sensorOf(model_.groups(), result.sensors[i]), views[i].cells, spots);
+        result.value = model_.share(search.valueOf(spots));
+        result.whole = within_;
+    }
+
+  private:
+    const CoverageModel& model_;
+    double within_;
+};
+
+}  // namespace
+
+std::unique_ptr<ObjectiveSearch> LocaliseObjective::searchIn(const CoverageModel& model) const {
+    return std::make_unique<LocaliseIn>(model, within_);
+}
+
+std::string LocaliseObjective::finding(const Arrangement& found) const {
+    constexpr int kDigits = 4;
+    return "by cells the mean error of positions is " +
+           formatFixed((1 - *found.value) * *found.whole, kDigits) + " m, none above " +
+           formatDouble(*found.whole) + " m; no layout of these candidates makes it less than " +
+           formatFixed((1 - found.candidate_bound) * *found.whole, kDigits) + " m";
+}
+
+}  // namespace ispace::goals

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/objective_report.h"
+#include "extensions/goals/objective_report.h"
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/message.h"
 #include "base/number.h"
@@ -9,7 +11,7 @@
 #include "report/map/map_layer.h"
 #include "report/map/map_parts.h"
 
-namespace ispace {
+namespace ispace::goals {
 
 namespace {
 
@@ -164,8 +166,8 @@ class LeastSeenPathsLayer final : public MapLayer {
 
 }  // namespace
 
-ObjectivesSection::ObjectivesSection(const ObjectiveFigures& figures)
-    : figures_(figures), layer_(std::make_unique<LeastSeenPathsLayer>(figures)) {}
+ObjectivesSection::ObjectivesSection(ObjectiveFigures figures)
+    : figures_(std::move(figures)), layer_(std::make_unique<LeastSeenPathsLayer>(figures_)) {}
 
 ObjectivesSection::~ObjectivesSection() = default;
 
@@ -193,4 +195,4 @@ PageAdditions ObjectivesSection::page(const PageSubject& subject) const {
     return added;
 }
 
-}  // namespace ispace
+}  // namespace ispace::goals

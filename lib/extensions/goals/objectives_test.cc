@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
-#include "arrange/cell_floor.h"
-#include "coverage/localisation.h"
+#include "extensions/goals/cell_floor.h"
+#include "extensions/goals/localisation.h"
+#include "extensions/goals/localise_search.h"
+#include "extensions/goals/path_objective.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::goals {
 namespace {
 
 const std::string kGuarded =
@@ -18,15 +21,14 @@ const std::string kGuarded =
 
 ArrangeOptions pathOptions(Optimizer optimizer = Optimizer::Swap) {
     ArrangeOptions options = coarse(optimizer);
-    options.objective.of = ObjectiveChoice::Of::Path;
-    options.objective.way = {"a", "b"};
+    options.objective = std::make_shared<const PathObjective>(
+        PathChoice{"a", "b"}, StoreyZone{0, "a"}, StoreyZone{0, "b"});
     return options;
 }
 
 ArrangeOptions localiseOptions(double within, Optimizer optimizer = Optimizer::Swap) {
     ArrangeOptions options = coarse(optimizer);
-    options.objective.of = ObjectiveChoice::Of::Localise;
-    options.objective.within = within;
+    options.objective = std::make_shared<const LocaliseObjective>(within);
     return options;
 }
 
@@ -152,4 +154,4 @@ TEST(ArrangeLocalise, PlacesReceiversThatHearATagTogether) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::goals
