@@ -25,6 +25,7 @@ const Extensions& extensions() {
         ISPACE_MICROPHONES
         ISPACE_LUXES
         ISPACE_MOTES
+        ISPACE_THERMOMETERS
         ISPACE_DOORCOUNTERS
         ISPACE_GOALS
         ISPACE_EVENNESS

@@ -50,7 +50,6 @@ SensorReading SensorReader::begun(std::size_t sensor, SimTime time, const Movers
     reading.time = time;
     reading.seq = periods_[sensor].newest(time);
     reading.pose = poseOf(sensors_[sensor], movers);
-    continueZone(sensor, reading);
     return reading;
 }
 

@@ -134,7 +134,7 @@ void SensorReader::follow(const SensorReader& before,
                           const std::unordered_set<std::string_view>& stayers, SimTime time,
                           const Movers& movers) {
     followTrail(before, stayers, movers);
-    followZones(before, time, movers);
+    followMemories(before, time, movers);
     std::unordered_map<std::string_view, std::size_t> old;
     for (std::size_t i = 0; i < before.sensors_.size(); ++i) old.emplace(before.sensors_[i].id, i);
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
@@ -329,12 +329,34 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
     updateBodies(movers);
     makeTrailBodies(due);
     if (!has_others) return;
-    heatZones(due);
+    advanceMemories(due);
     updateVelocities(movers);
     std::size_t receiver = 0, tag = 0;
     for (const Sensor& sensor : sensors_) {
         if (sensor.is<Receiver>()) receivers_[receiver++].pose = poseOf(sensor, movers);
         if (sensor.is<Tag>()) tags_[tag++].pose = poseOf(sensor, movers);
+    }
+}
+
+/// Advances what due sensors share with others of their kinds; their readings continue from it.
+void SensorReader::advanceMemories(std::span<const std::size_t> due) {
+    for (const std::size_t i : due) {
+        const SensorKind& kind = kindOf(sensors_[i].model);
+        if (kind.advance == nullptr) continue;
+        readings_[i].value =
+            kind.advance(sensors_[i], seconds(readings_[i].time), bodies_, memories_[&kind]);
+    }
+}
+
+/// Advances what sensors shared in the scene before to its end.
+void SensorReader::followMemories(const SensorReader& before, SimTime time, const Movers& movers) {
+    memories_ = before.memories_;
+    bool are_bodies_here = false;
+    for (const Sensor& sensor : before.sensors_) {
+        const SensorKind& kind = kindOf(sensor.model);
+        if (kind.advance == nullptr) continue;
+        if (!std::exchange(are_bodies_here, true)) updateBodies(movers);
+        kind.advance(sensor, seconds(time), bodies_, memories_[&kind]);
     }
 }
 

@@ -10,10 +10,12 @@
 // of their periods, also those that end within a step or in skipped steps of a replay.
 #pragma once
 
+#include <any>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,7 +27,6 @@
 #include "scene/scene.h"
 #include "sense/photo.h"
 #include "sense/scan.h"
-#include "sense/zone_temperatures.h"
 #include "sim/inertial_means.h"
 #include "sim/motion.h"
 #include "sim/mover.h"
@@ -67,9 +68,8 @@ class SensorReader {
     /// continue from their last reading now.
     void skip(SimTime time, const Movers& movers);
     /// Call it before the first reading in another scene: unchanged sensors keep their last
-    /// reading, gates their counts, and zones their temperatures; scans that have begun go on.
-    /// \param movers of this scene
-    /// \pre all of `before` is read
+    /// reading, gates their counts, and kinds what their sensors share; scans that have begun go
+    /// on. \param movers of this scene \pre all of `before` is read
     void follow(const SensorReader& before, const std::unordered_set<std::string_view>& stayers,
                 SimTime time, const Movers& movers);
     /// Records that robots or people have moved.
@@ -137,9 +137,8 @@ class SensorReader {
     void updateVelocities(const Movers& movers);
     void setBodies(const MoverPoses& places, std::span<const double> heights,
                    MovingBodies& bodies) const;
-    void continueZone(std::size_t sensor, SensorReading& reading) const;
-    void heatZones(std::span<const std::size_t> due);
-    void followZones(const SensorReader& before, SimTime time, const Movers& movers);
+    void advanceMemories(std::span<const std::size_t> due);
+    void followMemories(const SensorReader& before, SimTime time, const Movers& movers);
     void followTrail(const SensorReader& before,
                      const std::unordered_set<std::string_view>& stayers, const Movers& movers);
     static SimTime durationOf(const Laser& laser, SimTime step);
@@ -167,7 +166,7 @@ class SensorReader {
     TakerOptions at_rest_;  // the same without velocities
     SimTime step_;
     FloorSensors floor_;
-    ZoneTemperatures zones_;
+    std::map<const SensorKind*, std::any> memories_;  // of kinds with SensorKind::advance
     InertialMeans inertial_;
     std::vector<Sensor> sensors_;  // at their starts
     RayScenes* worlds_;

@@ -130,18 +130,6 @@ TEST(ApplianceRecords, AreChecked) {
               1U);
 }
 
-TEST(Appliance, HeatsItsZone) {
-    const auto seen = [](const char* state) {
-        const Scene scene = sceneOf(std::string("appliance id=k kind=tv at=0,1 heat=50% state=") +
-                                    state + "\nthermometer id=t at=1,0,1\n");
-        return sensorsOf<Thermometer>(scene).front().as<Thermometer>().heat.power;
-    };
-    EXPECT_EQ(seen("off"), 0);
-    EXPECT_EQ(seen("standby"), 0.2);
-    EXPECT_EQ(seen("start"), 45);
-    EXPECT_EQ(seen("hold"), 34);
-}
-
 TEST(Appliance, HasStates) {
     const Scene scene =
         sceneOf("appliance id=k kind=kettle at=0,1 on=yes state=start\nplug id=p of=k\n");

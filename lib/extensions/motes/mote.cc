@@ -117,7 +117,6 @@ const SensorKind Mote::kKind = {
         "hears; bare: radio=30 loss=6 max=100000 rate=1",
     .heading_help = "direction that its light sensor faces, from +x",
     .device_help = "a node of wireless sensor networks one can buy",
-    .listed_before = "thermometer",
     .sign = SensorSign::Diamond,
     .add_keys = addMoteKeys,
     .body = moteBody,

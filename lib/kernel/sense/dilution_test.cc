@@ -101,7 +101,6 @@ TEST(Dilution, AnchorsMeasureDistances) {
 
 TEST(Dilution, KindsThatMeasureNoPositionTellNone) {
     EXPECT_EQ(informationOf(Imu(), {0, 0, 2}, {1, 0, 0}).xx, 0);
-    EXPECT_EQ(informationOf(Thermometer(), {0, 0, 2}, {1, 0, 0}).xx, 0);
     EXPECT_TRUE(std::isinf(FloorInformation().error()));
 }
 

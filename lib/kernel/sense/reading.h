@@ -25,7 +25,6 @@
 #include "sense/radar_frame.h"
 #include "sense/scan.h"
 #include "sense/selection.h"
-#include "sense/temperature.h"
 #include "sense/trajectory.h"
 #include "sense/ultrasound_burst.h"
 #include "sense/uwb_ranges.h"
@@ -64,17 +63,17 @@ struct GateState {
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
 using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, UwbRanges,
-                                  Inertia, Temperature, AddedReading, MatState, GateState>;
+                                  Inertia, AddedReading, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
 using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, UwbRanges,
-                             Inertia, Temperature, AddedReading>;
+                             Inertia, AddedReading>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);
 
 /// Carries the state of a sensor with memory on to its next reading, by `follow(before, now)` of
-/// its value: a thermometer goes on from its last temperature.
+/// its value.
 void carryOn(const ReadingValue& before, ReadingValue& now);
 
 /// Returns true if readAtOnce() reads sensors like this one by rays in a mesh.

@@ -16,7 +16,6 @@
 #include "scene/sensor/laser.h"
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
-#include "scene/sensor/thermometer.h"
 #include "scene/sensor/ultrasound.h"
 #include "scene/sensor/uwb.h"
 
@@ -25,8 +24,8 @@ namespace ispace {
 /// Parameters of a sensor of any kind; those on the floor are last. Reports and manuals list kinds
 /// in this order, and those that extensions add among or behind them (SensorKind::listed_before).
 /// Only this header, the sources of the kinds and the computation of readings distinguish kinds.
-using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Uwb, Imu, Thermometer,
-                                 AddedSensor, Mat, Gate>;
+using SensorModel =
+    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Uwb, Imu, AddedSensor, Mat, Gate>;
 
 /// True for parameters in the list, false for those of a kind that an extension adds.
 template <typename Model, typename Models = SensorModel>

@@ -126,6 +126,7 @@ struct RoomRecords {
 
 struct AddedReading;
 struct Moment;
+class MovingBodies;
 struct ReadingKind;
 
 /// One kind of sensor, with all its properties that other folders use: kKind of its parameters,
@@ -185,6 +186,12 @@ struct SensorKind {
     /// A run takes the reading of each of its periods, also of those that begin and end within a
     /// step: what it remembers depends on all of them. \pre it has `follow`
     bool needs_each_period = false;
+    /// Advances what the sensors of the kind share in a run, such as the temperature of their zone,
+    /// for one of them to a time in seconds, and returns the reading from which its next one
+    /// continues. Null: they share no state. \param memory empty at the start of a run
+    /// \pre it has `follow`
+    AddedReading (*advance)(const Sensor& sensor, double time, const MovingBodies& bodies,
+                            std::any& memory) = nullptr;
     const ReadingKind* reading = nullptr;  ///< the fields, formats and topics of its readings
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/temperature.h"
+#include "extensions/thermometers/temperature.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,11 @@
 #include <string>
 
 #include "base/error.h"
+#include "extensions/thermometers/thermometers_test.h"
+#include "sense/formats/reading_fields.h"
 #include "support/test_readings.h"
 
-namespace ispace {
+namespace ispace::thermometers {
 namespace {
 
 constexpr const char* kCold = "weather celsius=0\n";
@@ -27,7 +29,7 @@ Temperature temperatureIn(const std::string& room, double time = 0,
     ReadingSampler taker(sensors, worlds, bodies, options);
     const ReadingJob job{0, 0, time, sensors.read[0].pose, {}};
     taker.prepare(job);
-    return std::get<Temperature>(taker.take(job));
+    return std::get<AddedReading>(taker.take(job)).as<Temperature>();
 }
 
 TEST(Temperature, CoolsExponentially) {
@@ -133,19 +135,19 @@ TEST(Temperature, ContinuesFromTheReadingBefore) {
     const double constant = 165e3 / 1.5;
     const Temperature first = temperatureIn(cold, 5000);
     Temperature next = temperatureIn(warm, 8000);
-    follow(first, next);
+    goOn(first, 3000, next);
     EXPECT_NEAR(next.celsius, 30 + (first.celsius - 30) * std::exp(-3000 / constant), 1e-12);
     // In small steps it is the same.
     Temperature last = first;
     for (int k = 1; k <= 30; ++k) {
         Temperature step = temperatureIn(warm, 5000 + 100 * k);
-        follow(last, step);
+        goOn(last, 100, step);
         last = step;
     }
     EXPECT_NEAR(last.celsius, next.celsius, 1e-9);
     // Earlier readings are no past.
     Temperature back = temperatureIn(cold, 1000);
-    follow(next, back);
+    goOn(next, 1000 - 8000, back);
     EXPECT_NEAR(back.celsius, 20 * std::exp(-1000 / constant), 1e-12);
 }
 
@@ -163,7 +165,7 @@ TEST(Temperature, HasNoiseInReadingsAlone) {
     EXPECT_EQ(temperatureIn("zone id=z at=0,0 size=4,5 celsius=60\n", 0, layout, noisy).celsius,
               19);
     Temperature next = temperatureIn(room, 30000, layout, noisy);
-    follow(one, next);
+    goOn(one, 10000, next);
     EXPECT_NEAR(next.truth, temperatureIn(room, 30000).celsius, 1e-9)
         << "errors do not add up in the zone";
 }
@@ -179,5 +181,12 @@ TEST(Temperature, IsOfTheZoneInWhichItStands) {
     EXPECT_THROW(temperatureIn(kZone, 0, "thermometer at=0,0 limits=5,5\n"), FormatError);
 }
 
+TEST(Temperature, HasATopic) {
+    const auto topics = readingKind(modelOf(Thermometer())).topics;
+    ASSERT_EQ(topics.size(), 1U);
+    EXPECT_EQ(topics[0].name, "temperature");
+    EXPECT_EQ(topics[0].type, RosType::Temperature);
+}
+
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::thermometers

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The memory of a run: zones have one temperature for all their thermometers, however often each
+// of them is read. Advancing a zone is O(moving bodies); states are of one thread.
+//
+//     ZoneTemperatures zones;
+//     const double celsius = zones.advance(thermometer, 60, bodies).celsius;  // after a minute
 #pragma once
 
 #include <string>
 #include <unordered_map>
 
-#include "scene/sensor/thermometer.h"
+#include "extensions/thermometers/thermometer.h"
 #include "trace/moving_bodies.h"
 
-namespace ispace {
+namespace ispace::thermometers {
 
 /// Returns the temperature that constant heat and people lead to.
 double steadyTemperature(const ZoneHeat& heat, const MovingBodies& bodies);
@@ -26,13 +31,12 @@ class ZoneTemperatures {
     };
 
     /// Advances the thermometer's zone to a time, with its heat and the people in it since the time
-    /// before, or since the start of a new zone. An earlier time restarts it.
-    void advance(const Thermometer& thermometer, double time, const MovingBodies& bodies);
-    /// Returns the last state of the thermometer's zone.
-    [[nodiscard]] State stateOf(const Thermometer& thermometer) const;
+    /// before, or since the start of a new zone, and returns its state. An earlier time restarts
+    /// it.
+    State advance(const Thermometer& thermometer, double time, const MovingBodies& bodies);
 
   private:
     std::unordered_map<std::string, State> zones_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::thermometers

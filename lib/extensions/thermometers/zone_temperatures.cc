@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/zone_temperatures.h"
+#include "extensions/thermometers/zone_temperatures.h"
 
 #include <cmath>
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include "geom/polygon.h"
 #include "sense/selection.h"
 
-namespace ispace {
+namespace ispace::thermometers {
 
 namespace {
 
@@ -38,19 +38,15 @@ double temperatureAfter(const ZoneHeat& heat, double steady, double from, double
     return from - (steady - from) * std::expm1(-seconds * heat.loss / heat.storage);
 }
 
-void ZoneTemperatures::advance(const Thermometer& thermometer, double time,
-                               const MovingBodies& bodies) {
+ZoneTemperatures::State ZoneTemperatures::advance(const Thermometer& thermometer, double time,
+                                                  const MovingBodies& bodies) {
     const ZoneHeat& heat = thermometer.heat;
     State& state = zones_.try_emplace(thermometer.zone, State{heat.start, 0}).first->second;
     if (time < state.time) state = {heat.start, 0};
-    if (time == state.time) return;
+    if (time == state.time) return state;
     const double passed = time - state.time;
     state = {temperatureAfter(heat, steadyTemperature(heat, bodies), state.celsius, passed), time};
+    return state;
 }
 
-ZoneTemperatures::State ZoneTemperatures::stateOf(const Thermometer& thermometer) const {
-    const auto found = zones_.find(thermometer.zone);
-    return found == zones_.end() ? State{thermometer.heat.start, 0} : found->second;
-}
-
-}  // namespace ispace
+}  // namespace ispace::thermometers

@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/thermometers: thermometers of zones, which heaters, lamps, people and the sun
+// warm. Uses sense and below.
+//
+// The temperature of a zone follows Newton's law of cooling. It is solved in closed form, so that
+// the steps of a run do not change it as long as the heat stays the same. The heat of all zones is
+// computed once for a room, in O(zones * (windows + heaters + lamps)).
+//
+//     addThermometers();                                         // before the first scene is read
+//     const Sensor sensor = sensorsOf<Thermometer>(scene).front();
+//     const double power = sensor.as<Thermometer>().heat.power;  // W, without people
 #pragma once
 
 #include <cstddef>
@@ -11,6 +21,10 @@
 namespace ispace {
 
 struct SensorKind;
+
+}  // namespace ispace
+
+namespace ispace::thermometers {
 
 /// The heat of a zone as one body of air and walls with one temperature T:
 ///
@@ -50,4 +64,7 @@ struct Thermometer {
 /// zone; the model stays. \throws FormatError if its limits are not apart
 Thermometer withParameters(Thermometer base, const Record& record);
 
-}  // namespace ispace
+/// Adds the kind, for the program.
+void addThermometers();
+
+}  // namespace ispace::thermometers

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/sensor/thermometer.h"
+#include "extensions/thermometers/thermometer.h"
 
 #include <algorithm>
+#include <any>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -11,13 +12,15 @@
 #include "base/number.h"
 #include "env/body.h"
 #include "env/walls.h"
+#include "extensions/thermometers/temperature.h"
+#include "extensions/thermometers/zone_temperatures.h"
 #include "geom/predicates.h"
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::thermometers {
 
 Thermometer withParameters(Thermometer base, const Record& record) {
     if (record.has("limits")) {
@@ -281,9 +284,22 @@ void lookUpZone(SensorModel& model, const Record& record, const RoomRecords& roo
                                "`zone`: it stands in no zone, whose temperature it would "
                                "report; name one"));
     }
-    Thermometer& thermometer = std::get<Thermometer>(model);
-    thermometer.zone = room.ids[zone->record];
-    thermometer.heat = zone->heat;
+    changeModel<Thermometer>(model, [&](Thermometer& thermometer) {
+        thermometer.zone = room.ids[zone->record];
+        thermometer.heat = zone->heat;
+    });
+}
+
+/// Zones have one temperature for all their thermometers.
+AddedReading advanceZone(const Sensor& sensor, double time, const MovingBodies& bodies,
+                         std::any& memory) {
+    if (!memory.has_value()) memory = ZoneTemperatures();
+    ZoneTemperatures& zones = *std::any_cast<ZoneTemperatures>(&memory);
+    const Thermometer& thermometer = sensor.as<Thermometer>();
+    const ZoneTemperatures::State last = zones.advance(thermometer, time, bodies);
+    Temperature before;
+    before.truth = last.celsius;
+    return {last.time, 0, sensor.pose, &Thermometer::kKind, before};
 }
 
 std::vector<Mesh> thermometerBody() {
@@ -308,10 +324,19 @@ const SensorKind Thermometer::kKind = {
     .read = readModel<Thermometer>,
     .look_up = lookUpZone,
     .summary = [](const SensorModel& model) -> DeviceSummary {
-        return {"-", "-", "-", formatDouble(std::get<Thermometer>(model).rate)};
+        return {"-", "-", "-", formatDouble(tryModel<Thermometer>(model)->rate)};
     },
     .bearings = [](const SensorModel& /*model*/) { return BearingSpan{}; },
     .perceives = false,
-    .is_read = true};
+    .is_read = true,
+    .measure = measureBy<Thermometer>,
+    .follow =
+        [](const AddedReading& before, AddedReading& now) {
+            goOn(before.as<Temperature>(), now.time - before.time, now.as<Temperature>());
+        },
+    .advance = advanceZone,
+    .reading = &Temperature::kKind};
 
-}  // namespace ispace
+void addThermometers() { addSensorKind(Thermometer::kKind); }
+
+}  // namespace ispace::thermometers

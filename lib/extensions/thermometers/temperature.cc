@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/temperature.h"
+#include "extensions/thermometers/temperature.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "sense/zone_temperatures.h"
+#include "extensions/thermometers/zone_temperatures.h"
 
-namespace ispace {
+namespace ispace::thermometers {
 
 namespace {
 
@@ -24,7 +24,7 @@ void measure(Temperature& now, double truth) {
 
 Temperature readingOf(const Thermometer& thermometer, const Moment& now) {
     const ZoneHeat& heat = thermometer.heat;
-    Temperature reading{.time = now.time, .frame = now.frame, .pose = now.pose};
+    Temperature reading;
     reading.steady = steadyTemperature(heat, now.bodies);
     reading.constant = heat.storage / heat.loss;
     reading.min = thermometer.min;
@@ -41,11 +41,10 @@ Temperature readingOf(const Thermometer& thermometer, const Moment& now) {
     return reading;
 }
 
-void follow(const Temperature& before, Temperature& now) {
-    const double passed = now.time - before.time;
+void goOn(const Temperature& before, double passed, Temperature& now) {
     if (passed >= 0)
         measure(now,
                 before.truth - (now.steady - before.truth) * std::expm1(-passed / now.constant));
 }
 
-}  // namespace ispace
+}  // namespace ispace::thermometers

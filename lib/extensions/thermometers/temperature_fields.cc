@@ -2,9 +2,10 @@
 // Readings of thermometers.
 #include <cmath>
 
+#include "extensions/thermometers/temperature.h"
 #include "sense/formats/field_values.h"
 
-namespace ispace {
+namespace ispace::thermometers {
 
 namespace {
 
@@ -38,4 +39,4 @@ constexpr RosTopic kTemperatureTopics[] = {{RosType::Temperature, "temperature",
 
 const ReadingKind Temperature::kKind = {.fields = kTemperatureFields, .topics = kTemperatureTopics};
 
-}  // namespace ispace
+}  // namespace ispace::thermometers
