@@ -24,6 +24,7 @@ const Extensions& extensions() {
         ISPACE_RFIDS
         ISPACE_MICROPHONES
         ISPACE_LUXES
+        ISPACE_IMUS
         ISPACE_MOTES
         ISPACE_THERMOMETERS
         ISPACE_DOORCOUNTERS

@@ -72,7 +72,6 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
     : scene_(setting.scene.get()),
       options_{.noise_seed = noiseSeedOf(options)},
       taking_{.noise_seed = noiseSeedOf(options), .fixes = std::make_shared<UwbFixes>()},
-      at_rest_{.noise_seed = noiseSeedOf(options)},
       step_(options.step),
       floor_(*scene_),
       worlds_(&setting.worlds),
@@ -110,9 +109,9 @@ SensorReader::SensorReader(SceneResources& setting, const Options& options)
                 {placed.pose.position.onFloor(), wrapped(placed.pose.heading)});
     for (std::size_t i = 0; i < count; ++i) {
         const Sensor& sensor = sensors_[i];
-        if (!sensor.is<Imu>() || (!sensor.mount && !sensor.person)) continue;
-        inertial_.add(i, sensor.mount ? std::optional(sensor.mount->robot) : std::nullopt,
-                      sensor.person, mountOf(sensor).position.onFloor());
+        if (!kindOf(sensor.model).integrates || (!sensor.mount && !sensor.person)) continue;
+        means_.add(i, sensor.mount ? std::optional(sensor.mount->robot) : std::nullopt,
+                   sensor.person, mountOf(sensor).position.onFloor());
     }
 }
 
@@ -146,7 +145,7 @@ void SensorReader::follow(const SensorReader& before,
             continue;
         readings_[i] = before.readings_[found->second];
         due_[i] = before.due_[found->second];
-        inertial_.goOn(i, before.inertial_, found->second);
+        means_.goOn(i, before.means_, found->second);
         // Read in every step, although the reading is of a period.
         if (sensor.is<Gate>())
             floor_.goOn(gateOf(i), before.floor_.gate(before.gateOf(found->second)));
@@ -156,14 +155,14 @@ void SensorReader::follow(const SensorReader& before,
 void SensorReader::jumped() {
     moved();
     floor_.forgetPlaces();
-    inertial_.jumped();
+    means_.jumped();
     last_places_.reset();
 }
 
 void SensorReader::begin(SimTime time, const Movers& movers) {
     finish();
     floor_.follow(movers);
-    inertial_.step(movers);
+    means_.step(movers);
     if (trail_.isKept()) trail_.add(time, movers, std::exchange(trail_moved_, false));
     latest_.clear();
     catchUp(time, movers);
@@ -184,7 +183,7 @@ void SensorReader::skip(SimTime time, const Movers& movers) {
     finish();
     latest_.clear();
     floor_.follow(movers);
-    inertial_.step(movers);
+    means_.step(movers);
     trail_.clear();
     catchUp(time, movers);
     std::vector<std::size_t> due;
@@ -322,7 +321,7 @@ void SensorReader::update(std::span<const std::size_t> due, SimTime time, const 
             reading.pose =
                 sweptPose(*laser, reading.pose, static_cast<double>(reading.seq % laser->scans()));
         if (laser != nullptr) continue;
-        if (sensor.is<Imu>()) inertial_.read(i, time);
+        if (kindOf(sensor.model).integrates) means_.read(i, time);
         has_others = true;
         if (rayCount(sensor.model) > 0) worlds_->prepareMesh(kindOf(sensor.model).stopped_by);
     }
@@ -410,7 +409,7 @@ void SensorReader::measure(std::size_t sensor, SimTime time) {
         reading.value = floor_.gate(gateOf(sensor));
     else if (placed.is<Mat>())
         reading.value = floor_.mat(matOf(sensor));
-    else if (placed.is<Imu>())
+    else if (kindOf(placed.model).integrates)
         integrate(sensor);
     else if (!isHeavy(placed))
         readNow(placed, bodies_, reading);
@@ -427,14 +426,12 @@ void SensorReader::readNow(const Sensor& sensor, const MovingBodies& bodies,
     reading.value = std::move(value);
 }
 
-/// Reads a unit of which the rates and accelerations are the means since its last reading.
+/// Reads a sensor that reports the mean motion of its carrier since its last reading.
 void SensorReader::integrate(std::size_t sensor) {
     SensorReading& reading = readings_[sensor];
-    auto inertia = std::get<Inertia>(
-        valueOf(readAtOnce({sensors_[sensor], reading.pose, frameOf(reading.seq),
-                            seconds(reading.time), *worlds_, bodies_, receivers_, at_rest_})));
-    inertial_.addTo(sensor, inertia);
-    reading.value = inertia;
+    reading.value = valueOf(
+        readAtOnce({sensors_[sensor], reading.pose, frameOf(reading.seq), seconds(reading.time),
+                    *worlds_, bodies_, receivers_, taking_, means_.of(sensor)}));
 }
 
 /// An instantaneous scan is cast at once; one that takes time follows its beams.

@@ -27,7 +27,7 @@
 #include "scene/scene.h"
 #include "sense/photo.h"
 #include "sense/scan.h"
-#include "sim/inertial_means.h"
+#include "sim/mean_motions.h"
 #include "sim/motion.h"
 #include "sim/mover.h"
 #include "sim/sensor_reading.h"
@@ -163,11 +163,10 @@ class SensorReader {
     const Scene* scene_;
     ReadingOptions options_;
     TakerOptions taking_;
-    TakerOptions at_rest_;  // the same without velocities
     SimTime step_;
     FloorSensors floor_;
     std::map<const SensorKind*, std::any> memories_;  // of kinds with SensorKind::advance
-    InertialMeans inertial_;
+    MeanMotions means_;
     std::vector<Sensor> sensors_;  // at their starts
     RayScenes* worlds_;
     std::vector<Periods> periods_;

@@ -93,7 +93,6 @@ const SensorKind Lux::kKind = {
         "rate=1",
     .heading_help = "direction that the spot faces, from +x",
     .device_help = "a light meter one can buy",
-    .listed_before = "imu",
     .sign = SensorSign::Square,
     .add_keys = addLuxKeys,
     .body = luxBody,

@@ -78,7 +78,6 @@ const SensorKind Microphone::kKind = {
         "bare: floor=30 max=120 loss=30 rate=10",
     .heading_help = "direction of its front, from +x; it hears in all directions",
     .device_help = "a microphone one can buy",
-    .listed_before = "imu",
     .sign = SensorSign::Square,
     .add_keys = addMicrophoneKeys,
     .body = microphoneBody,

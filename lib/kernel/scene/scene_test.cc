@@ -365,7 +365,7 @@ TEST(SceneSchemas, WhatSeesOrHearsIsASensorAndRobotsAreNot) {
         if (kind->perceives) sensors.emplace_back(kind->keyword);
     for (const char* const seer : {"laser", "ranger", "ultrasound", "camera", "radar"})
         EXPECT_NE(std::find(sensors.begin(), sensors.end(), seer), sensors.end()) << seer;
-    for (const char* const other : {"tag", "imu", "mat"})
+    for (const char* const other : {"tag", "mat", "gate"})
         EXPECT_EQ(std::find(sensors.begin(), sensors.end(), other), sensors.end()) << other;
     for (const std::string& keyword : sensors) EXPECT_NE(sceneSchemas().find(keyword), nullptr);
     EXPECT_EQ(sensorKind("robot"), nullptr);

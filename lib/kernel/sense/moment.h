@@ -34,6 +34,12 @@ struct TakerOptions {
     std::shared_ptr<UwbFixes> fixes = {};
 };
 
+/// The mean motion of a carried sensor over the time since its last reading.
+struct MeanMotion {
+    double turn = 0;         ///< radians a second
+    Vec2 acceleration = {};  ///< m/s^2, in the axes of the room at the end
+};
+
 /// Each kind that is read all at once has a function `VALUE readingOf(const KIND&, const Moment&)`.
 struct Moment {
     const Sensor& sensor;
@@ -44,6 +50,8 @@ struct Moment {
     const MovingBodies& bodies;
     std::span<const Sensor> receivers;
     const TakerOptions& options;
+    /// In a run, of a carried sensor of a kind that integrates.
+    std::optional<MeanMotion> mean = {};
 
     /// Returns the surfaces that stop the sensor's rays. \pre they are prepared
     [[nodiscard]] const RayWorld& mesh() const {

@@ -19,7 +19,6 @@
 
 #include "sense/added_reading.h"
 #include "sense/depth.h"
-#include "sense/inertia.h"
 #include "sense/moment.h"
 #include "sense/photo.h"
 #include "sense/radar_frame.h"
@@ -63,11 +62,11 @@ struct GateState {
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
 using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, UwbRanges,
-                                  Inertia, AddedReading, MatState, GateState>;
+                                  AddedReading, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
-using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, UwbRanges,
-                             Inertia, AddedReading>;
+using Reading =
+    std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, UwbRanges, AddedReading>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

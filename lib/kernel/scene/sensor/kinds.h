@@ -12,7 +12,6 @@
 #include "scene/sensor/added_sensor.h"
 #include "scene/sensor/camera.h"
 #include "scene/sensor/floor_sensor.h"
-#include "scene/sensor/imu.h"
 #include "scene/sensor/laser.h"
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
@@ -25,7 +24,7 @@ namespace ispace {
 /// in this order, and those that extensions add among or behind them (SensorKind::listed_before).
 /// Only this header, the sources of the kinds and the computation of readings distinguish kinds.
 using SensorModel =
-    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Uwb, Imu, AddedSensor, Mat, Gate>;
+    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Uwb, AddedSensor, Mat, Gate>;
 
 /// True for parameters in the list, false for those of a kind that an extension adds.
 template <typename Model, typename Models = SensorModel>

@@ -166,6 +166,7 @@ struct SensorKind {
     bool is_arranged = false;    ///< `arrange` can choose its pose
     bool is_overhead = false;    ///< it hangs above people's heads unless `--mount` says otherwise
     bool follows_poses = false;  ///< `scan --poses` can move it
+    bool integrates = false;     ///< a run tells it the mean motion of its carrier: Moment::mean
     /// A point counts as covered if this many of the kind see it.
     std::size_t together = 1;
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/sensor/imu.h"
+#include "extensions/imus/imu.h"
 
 #include "base/number.h"
+#include "extensions/imus/inertia.h"
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
-namespace ispace {
+namespace ispace::imus {
 
 Imu withParameters(Imu base, const Record& record) {
     if (record.has("gyro_bias")) base.gyro.bias = record.number("gyro_bias");
@@ -56,10 +57,15 @@ const SensorKind Imu::kKind = {
     .body = imuBody,
     .read = readModel<Imu>,
     .summary = [](const SensorModel& model) -> DeviceSummary {
-        return {"-", "-", "-", formatDouble(std::get<Imu>(model).rate)};
+        return {"-", "-", "-", formatDouble(tryModel<Imu>(model)->rate)};
     },
     .bearings = [](const SensorModel& /*model*/) { return BearingSpan{}; },
     .perceives = false,
-    .is_read = true};
+    .is_read = true,
+    .integrates = true,
+    .measure = measureBy<Imu>,
+    .reading = &Inertia::kKind};
 
-}  // namespace ispace
+void addImus() { addSensorKind(Imu::kKind); }
+
+}  // namespace ispace::imus

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/inertia.h"
+#include "extensions/imus/inertia.h"
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-namespace ispace {
+namespace ispace::imus {
 
 namespace {
 
@@ -37,26 +37,22 @@ Vec3 errorsOf(const InertialNoise& noise, double rate, std::uint32_t first, cons
 }  // namespace
 
 Inertia readingOf(const Imu& imu, const Moment& now) {
-    Inertia reading{now.time, now.frame, now.pose, {}, {}, {}};
+    Inertia reading;
     const std::uint32_t carrier = carrierOf(now.sensor);
-    if (carrier != MovingBodies::kNoOwner) {
-        const MoverVelocity motion = now.options.velocities.of(carrier);
-        reading.velocity = motion.at(now.pose.position.onFloor());
-        reading.rates = inAxesOf(now.pose, {0, 0, motion.turn});
-    }
+    if (carrier != MovingBodies::kNoOwner)
+        reading.rates =
+            inAxesOf(now.pose, {0, 0, now.mean ? 0 : now.options.velocities.of(carrier).turn});
     reading.accelerations = inAxesOf(now.pose, {0, 0, kGravity});
-    if (!now.options.noise_seed) return reading;
-    const double radian = Angle::degrees(1).radians();
-    reading.rates = sum(reading.rates, radian * errorsOf(imu.gyro, imu.rate, 0, now));
-    reading.accelerations = sum(reading.accelerations, errorsOf(imu.accel, imu.rate, 3, now));
+    if (now.options.noise_seed) {
+        const double radian = Angle::degrees(1).radians();
+        reading.rates = sum(reading.rates, radian * errorsOf(imu.gyro, imu.rate, 0, now));
+        reading.accelerations = sum(reading.accelerations, errorsOf(imu.accel, imu.rate, 3, now));
+    }
+    if (!now.mean) return reading;
+    const Vec2 gained = now.mean->acceleration;
+    reading.rates = sum(reading.rates, inAxesOf(now.pose, {0, 0, now.mean->turn}));
+    reading.accelerations = sum(reading.accelerations, inAxesOf(now.pose, {gained.x, gained.y, 0}));
     return reading;
 }
 
-void follow(const Inertia& before, Inertia& now) {
-    const double passed = now.time - before.time;
-    if (passed <= 0) return;
-    const Vec2 mean = (1 / passed) * (now.velocity - before.velocity);
-    now.accelerations = sum(now.accelerations, inAxesOf(now.pose, {mean.x, mean.y, 0}));
-}
-
-}  // namespace ispace
+}  // namespace ispace::imus

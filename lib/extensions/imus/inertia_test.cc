@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/inertia.h"
-#include "scene/sensor/sensor_keys.h"
+#include "extensions/imus/inertia.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
+#include "extensions/imus/imus_test.h"
+#include "scene/sensor/sensor_keys.h"
+#include "sense/formats/reading_fields.h"
 #include "support/test_readings.h"
 
-namespace ispace {
+namespace ispace::imus {
 namespace {
 
 constexpr double kGravity = 9.80665;
@@ -20,7 +22,7 @@ Inertia inertiaOf(const std::string& keys, const MoverVelocity& motion, TakerOpt
     const Scene scene = testing::scene("ispace size=12,12\n",
                                        "imu " + keys + " on=r1\nrobot id=r1 at=1,2 heading=90\n");
     options.velocities.robots = {motion};
-    return std::get<Inertia>(testing::readings(scene, options, frame).front());
+    return std::get<AddedReading>(testing::readings(scene, options, frame).front()).as<Inertia>();
 }
 
 void expectNear(Vec3 a, Vec3 b) {
@@ -42,22 +44,13 @@ TEST(Inertia, TellsRatesInItsOwnAxes) {
     const MoverVelocity turning{{1, 2}, {}, 0.5};
     expectNear(inertiaOf("at=0,0", turning).rates, {0, 0, 0.5});
     expectNear(inertiaOf("at=0,0 tilt=90", turning).rates, {0.5, 0, 0});
-    // Half a metre ahead of the centre of rotation, which is along y of the room.
-    const Vec2 velocity = inertiaOf("at=0.5,0", turning).velocity;
-    EXPECT_NEAR(velocity.x, -0.25, 1e-12);
-    EXPECT_NEAR(velocity.y, 0, 1e-12);
 }
 
-TEST(Inertia, TellsTheMeanAccelerationSinceTheLastReading) {
-    const Inertia before = inertiaOf("at=0,0", {{1, 2}, {0, 0.4}, 0});
-    Inertia now = inertiaOf("at=0,0", {{1, 2}, {0.1, 0.5}, 0});
-    now.time = 0.5;
-    follow(before, now);
-    // Ahead is +y of the room, left is -x.
-    expectNear(now.accelerations, {0.2, -0.2, kGravity});
-    Inertia same = before;
-    follow(before, same);
-    EXPECT_EQ(same.accelerations, before.accelerations) << "no time has passed";
+TEST(Inertia, HasATopic) {
+    const auto topics = readingKind(modelOf(Imu())).topics;
+    ASSERT_EQ(topics.size(), 1U);
+    EXPECT_EQ(topics[0].name, "imu");
+    EXPECT_EQ(topics[0].type, RosType::Imu);
 }
 
 TEST(Inertia, HasConstantErrorsAndWhiteNoise) {
@@ -96,4 +89,4 @@ TEST(Imu, ReadsItsKeys) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::imus

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sums of turns and of changes of velocity, step by step. In axes that turn by a step's angle a, a
 // constant velocity v changes by a v to its left.
-#include "sim/inertial_means.h"
+#include "sim/mean_motions.h"
 
 #include <algorithm>
 #include <utility>
 
 namespace ispace {
 
-void InertialMeans::add(std::size_t sensor, std::optional<std::size_t> robot,
-                        std::optional<std::size_t> person, Point2 mount) {
+void MeanMotions::add(std::size_t sensor, std::optional<std::size_t> robot,
+                      std::optional<std::size_t> person, Point2 mount) {
     units_.push_back({sensor, robot, person, mount});
 }
 
-void InertialMeans::step(const Movers& movers) {
+void MeanMotions::step(const Movers& movers) {
     for (Unit& unit : units_) {
         const Motion& motion =
             unit.robot ? movers.robots[*unit.robot] : movers.people[*unit.person];
@@ -34,26 +34,26 @@ void InertialMeans::step(const Movers& movers) {
     }
 }
 
-void InertialMeans::jumped() {
+void MeanMotions::jumped() {
     for (Unit& unit : units_) unit.heading.reset();
 }
 
-void InertialMeans::read(std::size_t sensor, SimTime time) {
+void MeanMotions::read(std::size_t sensor, SimTime time) {
     for (Unit& unit : units_) {
         if (unit.sensor != sensor) continue;
         const double passed = seconds(time - unit.since);
         const Gain gain = std::exchange(unit.gain, {});
         unit.since = time;
-        unit.rate = passed > 0 ? gain.turn / passed : 0;
-        unit.acceleration = {};
+        unit.mean.turn = passed > 0 ? gain.turn / passed : 0;
+        unit.mean.acceleration = {};
         if (passed <= 0 || !unit.heading) continue;
         const Vec2 ahead = unitVector(*unit.heading);
-        unit.acceleration =
+        unit.mean.acceleration =
             (1 / passed) * (gain.velocity.x * ahead + gain.velocity.y * perpendicular(ahead));
     }
 }
 
-void InertialMeans::goOn(std::size_t sensor, const InertialMeans& before, std::size_t old_sensor) {
+void MeanMotions::goOn(std::size_t sensor, const MeanMotions& before, std::size_t old_sensor) {
     const Unit* const old = before.find(old_sensor);
     if (old == nullptr) return;
     for (Unit& unit : units_) {
@@ -67,20 +67,12 @@ void InertialMeans::goOn(std::size_t sensor, const InertialMeans& before, std::s
     }
 }
 
-void InertialMeans::addTo(std::size_t sensor, Inertia& reading) const {
+std::optional<MeanMotion> MeanMotions::of(std::size_t sensor) const {
     const Unit* const unit = find(sensor);
-    if (unit == nullptr) return;
-    const Frame3 axes(reading.pose);
-    const auto add = [&axes](Vec3& sum, Vec3 vector) {
-        sum.x += dot(vector, axes.forward);
-        sum.y += dot(vector, axes.left);
-        sum.z += dot(vector, axes.up);
-    };
-    add(reading.rates, {0, 0, unit->rate});
-    add(reading.accelerations, {unit->acceleration.x, unit->acceleration.y, 0});
+    return unit == nullptr ? std::nullopt : std::optional(unit->mean);
 }
 
-const InertialMeans::Unit* InertialMeans::find(std::size_t sensor) const {
+const MeanMotions::Unit* MeanMotions::find(std::size_t sensor) const {
     const auto found = std::find_if(units_.begin(), units_.end(),
                                     [sensor](const Unit& unit) { return unit.sensor == sensor; });
     return found == units_.end() ? nullptr : &*found;

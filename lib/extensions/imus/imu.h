@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/imus: inertial measurement units, which report the turns and accelerations of
+// robots and people. Uses sense and below.
+//
+// The sums of all readings of a run are the motion of the carrier, whatever the rate of the unit
+// and the step of the run are (sim/mean_motions.h). A reading casts no ray and is O(1).
+//
+//     addImus();                                   // before the first scene is read
+//     Imu imu;                                     // 100 readings a second, exact
+//     imu.gyro = {.bias = 0.5, .density = 0.005};  // as of MEMS units, with --noise
 #pragma once
 
 #include <cstddef>
@@ -10,6 +19,10 @@
 namespace ispace {
 
 struct SensorKind;
+
+}  // namespace ispace
+
+namespace ispace::imus {
 
 /// Errors of three axes: a constant one of each, and white noise.
 struct InertialNoise {
@@ -41,4 +54,7 @@ struct Imu {
 /// Returns `base` with the parameters that an `imu` record writes; the model stays.
 Imu withParameters(Imu base, const Record& record);
 
-}  // namespace ispace
+/// Adds the kind, for the program.
+void addImus();
+
+}  // namespace ispace::imus

@@ -8,13 +8,25 @@
 #include <string>
 #include <vector>
 
+#include "extensions/imus/imus_test.h"
+#include "extensions/imus/inertia.h"
 #include "sim/world.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::imus {
 namespace {
 
 using std::chrono::milliseconds;
+
+/// A reading and its time.
+struct TimedInertia : Inertia {
+    double time = 0;
+};
+
+TimedInertia newest(const World& world) {
+    const auto& reading = std::get<AddedReading>(world.reading(0).value);
+    return {reading.as<Inertia>(), reading.time};
+}
 
 /// The sums of the readings agree with the true motion of the robot, which speeds up, brakes, and
 /// turns to the next point of its path.
@@ -27,7 +39,7 @@ TEST(ImuRun, AgreesWithTheMotionOfItsRobot) {
     while (world.time() < std::chrono::seconds(30)) {
         world.step();
         if (world.latestReadings().empty()) continue;
-        const auto& reading = std::get<Inertia>(world.reading(0).value);
+        const TimedInertia reading = newest(world);
         speed += reading.accelerations.x * (reading.time - last);
         turned += Angle::radians(reading.rates.z * (reading.time - last)).degrees();
         last = reading.time;
@@ -43,7 +55,7 @@ TEST(ImuRun, AgreesWithTheMotionOfItsRobot) {
 }
 
 /// Drives along an arc at 0.8 m/s and 60 degrees a second, and returns the readings of a sensor.
-std::vector<Inertia> readingsOnAnArc(const std::string& keys) {
+std::vector<TimedInertia> readingsOnAnArc(const std::string& keys) {
     const Scene room = testing::scene("ispace size=20,20\n",
                                       "robot id=r1 at=0,0 max_speed=2 max_rotspeed=180 accel=1 "
                                       "rotaccel=100\nimu id=i1 on=r1 " +
@@ -51,11 +63,10 @@ std::vector<Inertia> readingsOnAnArc(const std::string& keys) {
     World world(room, milliseconds(5));
     world.command(0, {Verb::Speed, 0.8});
     world.command(0, {Verb::Rotspeed, 60});
-    std::vector<Inertia> readings;
+    std::vector<TimedInertia> readings;
     while (world.time() < std::chrono::seconds(4)) {
         world.step();
-        if (!world.latestReadings().empty())
-            readings.push_back(std::get<Inertia>(world.reading(0).value));
+        if (!world.latestReadings().empty()) readings.push_back(newest(world));
     }
     return readings;
 }
@@ -65,7 +76,7 @@ TEST(ImuRun, ReadsMeansInTheAxesOnTheWay) {
     const double rate = Angle::degrees(60).radians();
     for (const char* keys : {"at=0,0,0.2 rate=10", "at=0,0,0.2 rate=100", "at=0,0,0.2 rate=2"}) {
         double turned = 0, last = 0;
-        for (const Inertia& reading : readingsOnAnArc(keys)) {
+        for (const TimedInertia& reading : readingsOnAnArc(keys)) {
             turned += reading.rates.z * (reading.time - last);
             last = reading.time;
             // It speeds up at 100 degrees a second each second, for 0.6 s.
@@ -79,12 +90,12 @@ TEST(ImuRun, ReadsMeansInTheAxesOnTheWay) {
         }
     }
     // From 40 to 50 degrees a second between 0.4 and 0.5 s.
-    for (const Inertia& reading : readingsOnAnArc("at=0,0,0.2 rate=10"))
+    for (const TimedInertia& reading : readingsOnAnArc("at=0,0,0.2 rate=10"))
         if (std::abs(reading.time - 0.5) < 1e-9) {
             EXPECT_NEAR(reading.rates.z, Angle::degrees(45).radians(), 5e-3);
         }
     // Off the axis, turned: v w to the left of the robot, and the centripetal w^2 r.
-    const Inertia off = readingsOnAnArc("at=0.2,0.1,0.2 heading=30 rate=50").back();
+    const TimedInertia off = readingsOnAnArc("at=0.2,0.1,0.2 heading=30 rate=50").back();
     const double ahead = -0.2 * rate * rate, left = 0.8 * rate - 0.1 * rate * rate;
     const auto [c, s] = cosSin(Angle::degrees(30));
     EXPECT_NEAR(off.accelerations.x, c * ahead + s * left, 1e-9);
@@ -92,4 +103,4 @@ TEST(ImuRun, ReadsMeansInTheAxesOnTheWay) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::imus

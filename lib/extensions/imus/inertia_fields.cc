@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Readings of inertial measurement units.
+#include "extensions/imus/inertia.h"
 #include "sense/formats/field_values.h"
 
-namespace ispace {
+namespace ispace::imus {
 
 namespace {
 
@@ -66,4 +67,4 @@ constexpr RosTopic kImuTopics[] = {
 
 const ReadingKind Inertia::kKind = {.fields = kImuFields, .topics = kImuTopics};
 
-}  // namespace ispace
+}  // namespace ispace::imus
