@@ -18,10 +18,11 @@ const Extensions& extensions() {
         ISPACE_CAD
         ISPACE_CALIBRATION
         ISPACE_CURTAINS
-        // Kinds of sensors, in the order in which reports list those before the same one.
+        // Kinds of sensors, in the order in which reports list them.
         ISPACE_PIRS
         ISPACE_CONTACTS
         ISPACE_RFIDS
+        ISPACE_UWBS
         ISPACE_MICROPHONES
         ISPACE_LUXES
         ISPACE_IMUS

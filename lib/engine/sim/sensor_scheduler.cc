@@ -18,6 +18,7 @@
 #include "base/per_thread.h"
 #include "scene/sensor/sensor.h"
 #include "sense/selection.h"
+#include "sense/shared_results.h"
 #include "sim/world_state.h"
 
 namespace ispace {
@@ -71,7 +72,7 @@ int SensorReader::frameOf(std::int64_t number) {
 SensorReader::SensorReader(SceneResources& setting, const Options& options)
     : scene_(setting.scene.get()),
       options_{.noise_seed = noiseSeedOf(options)},
-      taking_{.noise_seed = noiseSeedOf(options), .fixes = std::make_shared<UwbFixes>()},
+      taking_{.noise_seed = noiseSeedOf(options), .shared = std::make_shared<SharedResults>()},
       step_(options.step),
       floor_(*scene_),
       worlds_(&setting.worlds),

@@ -220,7 +220,7 @@ TEST(Suggestions, AddALaserToARoomWithOverAMillionCandidatesAtTheUsualStep) {
 TEST(Suggestions, AddASensorWithAWideViewToAHallInSeconds) {
     // Some 20 000 sites with a view of 40 000 cells each would take minutes.
     const Advised hall = adviseOn("#env 1\nispace size=40,30\nwall from=0,-15 to=0,13\n",
-                                  "uwb id=u at=-10,0,2 range=30\n");
+                                  "radar id=d at=-10,0,2 fov=360,180 range=30\n");
     const Suggestion* const added = hall.find(Suggestion::Kind::Add);
     ASSERT_NE(added, nullptr);
     EXPECT_GT(added->share, 0.99) << added->text;  // the half behind the wall

@@ -58,7 +58,6 @@ const SensorKind Contact::kKind = {
     .noun = "contact",
     .help = "magnetic contact, which reports whether a door or window is open; bare: rate=10",
     .heading_help = "direction of its front, from +x",
-    .listed_before = "uwb",
     .sign = SensorSign::Square,
     .add_keys = addContactKeys,
     .body = contactBody,

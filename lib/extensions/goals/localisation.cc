@@ -12,10 +12,12 @@
 namespace ispace::goals {
 
 void SpotInformation::add(const Sensor& sensor, const SpaceInformation& information) {
-    if (sensor.is<Uwb>()) {
+    const SensorKind& kind = kindOf(sensor.model);
+    if (kind.locates_together > 1) {
         ranged += atKnownHeight(information);
         ++anchors;
-    } else if (kindOf(sensor.model).together == 1) {
+        needed_anchors = kind.locates_together;
+    } else if (kind.together == 1) {
         seen += atKnownHeight(information);
     } else {
         heard += information;
@@ -25,7 +27,7 @@ void SpotInformation::add(const Sensor& sensor, const SpaceInformation& informat
 
 double SpotInformation::error() const {
     FloorInformation all = seen;
-    if (anchors >= kMinAnchors) all += ranged;
+    if (anchors >= needed_anchors) all += ranged;
     if (receivers >= kMinReceivers) all += atAnyHeight(heard);
     return all.error();
 }

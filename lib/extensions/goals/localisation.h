@@ -2,7 +2,7 @@
 // The error with which sensors localise a tag or a person.
 //
 // Each sensor that sees a spot adds its Fisher information about the position (receivers of a tag
-// and UWB anchors only if enough of them hear it, see SpotInformation); the inverse of the
+// and anchors only if enough of them hear it, see SpotInformation); the inverse of the
 // sum bounds the covariance of any unbiased estimate (the Cramer-Rao bound: S. M. Kay, Fundamentals
 // of Statistical Signal Processing: Estimation Theory, 1993). The error is the root of the trace,
 // metres. It assumes independent errors of readings, by the noise of each model.
@@ -26,13 +26,14 @@ struct SpotInformation {
     FloorInformation seen;   ///< of sensors that know the height of the plane
     SpaceInformation heard;  ///< of receivers of a tag at any height
     std::size_t receivers = 0;
-    FloorInformation ranged;  ///< of UWB anchors
+    FloorInformation ranged;  ///< of anchors, which locate a tag on the plane together
     std::size_t anchors = 0;
+    std::size_t needed_anchors = 0;  ///< SensorKind::locates_together; 0 without anchors
 
     /// Adds a sensor that sees the spot. \param information informationOf() of it and the spot
     void add(const Sensor& sensor, const SpaceInformation& information);
     /// Returns the root mean square error of the position, metres; +infinity if it is not
-    /// determined. Receivers count from kMinReceivers on, anchors from kMinAnchors on, as in
+    /// determined. Receivers count from kMinReceivers on, anchors from needed_anchors on, as in
     /// readings.
     [[nodiscard]] double error() const;
 };

@@ -81,7 +81,6 @@ const SensorKind Pir::kKind = {
         "rate=10 hold=2 min_speed=0.1",
     .heading_help = "direction of its axis, from +x",
     .device_help = "a passive infrared sensor one can buy",
-    .listed_before = "uwb",
     .sign = SensorSign::Square,
     .add_keys = addPirKeys,
     .body = pirBody,

@@ -28,7 +28,6 @@
 #include "scene/placement_schemas.h"
 #include "scene/room_state.h"
 #include "sense/selection.h"
-#include "sense/uwb_ranges.h"
 #include "server/server_state.h"
 #include "server/session.h"
 #include "sim/activity.h"
@@ -308,56 +307,6 @@ TEST(Postures, CarryTags) {
     expect(tag_at("posture=sit support=0.4", "0,0,0.1"), {1, 2, 0});
     expect(tag_at("posture=lie support=0.5", "0.1,0.05,1.3"), {1.05, 2.1525, 0.702});
     expect(tag_at("posture=fallen", "0.1,0.05,1.3"), {0.95, 2.1525, 0.002});
-}
-
-/// Tags of `tag=` are on the chest, which is above a person on its back and below one on its belly.
-TEST(Postures, WearTagsOnTheChest) {
-    const double h = kHeight, chest = 0.48 + 0.75 * 0.39, ahead = 0.06 * h + 0.02;
-    const auto expect = [](const std::string& posture, Point3 local) {
-        SCOPED_TRACE(posture);
-        const Scene scene = sceneOf("human id=ann at=1,2 heading=90 tag=7 " + posture +
-                                    "\nuwb at=-3,-2,2.4\nuwb at=4,-3,0.5\nuwb at=2,-2,1\n");
-        RayScenes worlds(scene.environment);
-        worlds.prepareMesh(kindOf(scene.sensors.front().model).stopped_by);
-        const MovingBodies bodies(bodiesOf(scene));
-        const TakerOptions options;
-        for (const Sensor& sensor : scene.sensors) {
-            const auto tags =
-                readingOf(sensor.as<Uwb>(),
-                          Moment{sensor, sensor.pose, 0, 0, worlds, bodies, {}, options})
-                    .tags;
-            ASSERT_EQ(tags.size(), 1U);
-            const Point3 tag{1 - local.y, 2 + local.x, local.z};
-            EXPECT_NEAR(tags.front().range, length(tag - sensor.pose.position), 1e-6);
-        }
-    };
-    expect("", {ahead, 0, chest * h});
-    expect("right_arm=0,0", {ahead, 0, chest * h});
-    expect("posture=sit support=0.45", {ahead, 0, 0.45 + 0.75 * 0.39 * h});
-    expect("posture=lie support=0.5", {0.25 * 0.39 * h, 0, 0.5 + 0.12 * h + 0.02});
-    expect("posture=fallen", {0.25 * 0.39 * h, 0, 0.02});
-}
-
-/// The tag of a thing in the hand is where the thing is.
-TEST(Postures, TagsOfThingsAreInTheHand) {
-    const std::string cup = "cylinder id=cup at=3,3 size=0.1,0.1 height=0.2 tag=cup carried=ann\n";
-    const auto range = [&](const std::string& keys, Point3 at) {
-        const Scene scene =
-            sceneOf("human id=ann at=0,0 heading=90 " + keys + "\nuwb at=" + formatDouble(at.x) +
-                        ',' + formatDouble(at.y) + ',' + formatDouble(at.z) + "\n",
-                    std::string(kRoom) + cup);
-        const auto tags = std::get<UwbRanges>(testing::readings(scene).front()).tags;
-        return tags.empty() ? -1 : tags.front().range;
-    };
-    for (const char* const keys : {"", "right_arm=20,40", "right_arm=0,0 posture=sit"}) {
-        const Scene scene = sceneOf(std::string("human id=ann at=0,0 heading=90 ") + keys + "\n",
-                                    std::string(kRoom) + cup);
-        const Point3 load = scene.people.front().figure->load;
-        // The person faces +y.
-        const Point3 tag{-load.y, load.x, load.z + 0.2 + 0.01};
-        for (const Point3 at : {Point3{2, 2, 2}, Point3{0.5, 3, 0.3}})
-            EXPECT_NEAR(range(keys, at), length(tag - at), 1e-9) << keys;
-    }
 }
 
 TEST(Postures, CarriedThingsKeepTheirShapes) {

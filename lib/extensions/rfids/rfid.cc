@@ -58,12 +58,13 @@ const SensorKind Rfid::kKind = {
         "things; bare: range=0,3 fov=70,70 rate=10",
     .heading_help = "direction of the axis of its antenna, from +x",
     .device_help = "an RFID reader or antenna one can buy",
-    .listed_before = "uwb",
     .sign = SensorSign::Square,
     .add_keys = addRfidKeys,
     .body = rfidBody,
     .read = readModel<Rfid>,
     .look_up = lookUpTags,
+    .forget =
+        [](SensorModel& model) { changeModel<Rfid>(model, [](Rfid& one) { one.tags = {}; }); },
     .summary = [](const SensorModel& model) -> DeviceSummary {
         const Rfid& rfid = *tryModel<Rfid>(model);
         return {rangeText(rfid.min_range, rfid.max_range),

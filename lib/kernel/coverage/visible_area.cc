@@ -50,28 +50,18 @@ CellSet cellsOfScan(const Grid& grid, const LevelViews& level, const Sensor& sen
     return cells;
 }
 
-/// Removes the things of the room that a model lists, which do not change what it sees.
 SensorModel withoutLists(SensorModel model) {
-    const auto clear = []<typename T>(SharedList<T>& list) { list = {}; };
-    std::visit(
-        [&clear](auto& kind) {
-            if constexpr (requires { clear(kind.tags); }) clear(kind.tags);
-            if constexpr (requires { clear(kind.anchors); }) clear(kind.anchors);
-            if constexpr (requires { clear(kind.motes); }) clear(kind.motes);
-            if constexpr (requires { clear(kind.grid); }) clear(kind.grid);
-            if constexpr (requires { clear(kind.lights); }) clear(kind.lights);
-            if constexpr (requires { clear(kind.beams); }) clear(kind.beams);
-            if constexpr (requires { clear(kind.sources); }) clear(kind.sources);
-        },
-        model);
+    kindOf(model).forget(model);
     return model;
 }
 
 }  // namespace
 
 bool seeAlike(const Sensor& a, const Sensor& b) {
-    return a.pose == b.pose && a.model.index() == b.model.index() &&
-           (a.model == b.model || withoutLists(a.model) == withoutLists(b.model));
+    const SensorKind& kind = kindOf(a.model);
+    if (a.pose != b.pose || &kind != &kindOf(b.model)) return false;
+    return a.model == b.model ||
+           (kind.forget != nullptr && withoutLists(a.model) == withoutLists(b.model));
 }
 
 /// Regions by model and pose.

@@ -78,7 +78,7 @@ class VisibleArea {
 };
 
 /// Returns true if two sensors see the same in one room: their models are equal but for the lists
-/// of other things, such as the anchors of a `uwb` or its tags, and so are their poses.
+/// of other things (SensorKind::forget), such as the tags of a reader, and so are their poses.
 bool seeAlike(const Sensor& a, const Sensor& b);
 
 }  // namespace ispace

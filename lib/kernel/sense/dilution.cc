@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <variant>
+
+#include "scene/sensor/sensor_keys.h"
 
 namespace ispace {
 
@@ -72,65 +72,14 @@ FloorInformation atAnyHeight(const SpaceInformation& information) {
     return {std::max(0.0, xx - xz * xz / zz), xy - xz * yz / zz, std::max(0.0, yy - yz * yz / zz)};
 }
 
-namespace {
-
-/// Standard deviation of an error that is uniform over a width.
-double uniformSigma(double width) { return width / std::sqrt(12.0); }
-
-double distanceSigma(const RangeNoise& noise, double range) {
-    const auto [s0, s1, s2] = noise.sigma;
-    const double sigma = std::max(0.0, s0 + range * (s1 + range * s2));
-    return std::max(kMinSigma, std::hypot(sigma, uniformSigma(noise.resolution)));
-}
-
-/// Errors of one measurement of a point: of its distance, metres, and of its direction, radians; 0:
-/// not measured.
-struct SightErrors {
-    double distance = 0, direction = 0;
-};
-
-double directionSigma(const RangeNoise& noise, double step) {
-    return std::hypot(noise.angle_sigma.radians(), uniformSigma(step));
-}
-
-SightErrors errorsOf(const Laser& laser, double range) {
-    return {distanceSigma(laser.noise, range), directionSigma(laser.noise, laser.step.radians())};
-}
-
-SightErrors errorsOf(const Ranger& ranger, double range) {
-    const bool is_pinhole = ranger.projection == Projection::Pinhole;
-    const double pixel = is_pinhole ? 1 / ranger.fx() : ranger.fov_x.radians() / ranger.columns;
-    return {distanceSigma(ranger.noise, range), directionSigma(ranger.noise, pixel)};
-}
-
-SightErrors errorsOf(const Radar& radar, double range) {
-    return {distanceSigma(radar.noise, range), std::max(directionSigma(radar.noise, 0), kMinSigma)};
-}
-
-SightErrors errorsOf(const Camera& camera, double /*range*/) {
-    return {0, uniformSigma(1 / camera.fx)};
-}
-
-SightErrors errorsOf(const Receiver& receiver, double range) {
-    return {distanceSigma(receiver.noise, range), 0};
-}
-
-SightErrors errorsOf(const Uwb& uwb, double range) { return {distanceSigma(uwb.noise, range), 0}; }
-
-template <typename Model>
-SightErrors errorsOf(const Model& /*model*/, double /*range*/) {
-    return {};
-}
-
-}  // namespace
-
 SpaceInformation informationOf(const SensorModel& model, Point3 at, Point3 spot) {
     const Vec3 way = spot - at;
     // At the sensor itself the direction is undefined; there it errs as at the least distance.
     const double range = std::max(length(way), kMinSigma);
-    const SightErrors errors =
-        std::visit([range](const auto& one) { return errorsOf(one, range); }, model);
     SpaceInformation information;
+    const SensorKind& kind = kindOf(model);
+    if (kind.sight_errors == nullptr) return information;
+    const SightErrors errors = kind.sight_errors(model, range);
     const Vec3 along = length(way) > 0 ? (1 / length(way)) * way : Vec3{0, 0, -1};
     if (errors.distance > 0) information.add(along, errors.distance);
     if (errors.direction > 0) {

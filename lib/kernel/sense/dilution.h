@@ -38,17 +38,14 @@ FloorInformation atKnownHeight(const SpaceInformation& information);
 /// Returns the same if the height has to be measured, too.
 FloorInformation atAnyHeight(const SpaceInformation& information);
 
-/// Standard deviation of a distance without noise, metres.
-constexpr double kMinSigma = 0.001;
-
-/// Returns the information of one reading about a point that the sensor sees:
+/// Returns the information of one reading about a point that the sensor sees, by the errors of its
+/// kind (SensorKind::sight_errors):
 /// - lasers, rangers, radars: a distance, by their noise, and the direction;
 /// - cameras: the direction;
-/// - receivers, anchors: the distance of a tag.
+/// - receivers of tags: the distance.
 ///
-/// Distances err by `sigma` and the rounding to `resolution`, and by kMinSigma at least;
-/// directions by `angle_sigma` and the rounding to beams or pixels. Rounding counts as uniform.
-/// The depth of a depth camera counts as a distance. Zero for kinds that measure no position.
+/// Rounding counts as uniform. The depth of a depth camera counts as a distance. Zero for kinds
+/// that measure no position.
 /// \param at position of the sensor; its heading does not matter
 SpaceInformation informationOf(const SensorModel& model, Point3 at, Point3 spot);
 

@@ -89,16 +89,6 @@ TEST(Dilution, AnUnknownHeightIsThatOfAllVariances) {
     EXPECT_GE(atKnownHeight(sum).error(), 2 / std::sqrt(atKnownHeight(sum).trace()));
 }
 
-TEST(Dilution, AnchorsMeasureDistances) {
-    // At right angles in the plane of the tag, each distance is a coordinate.
-    Uwb anchor;
-    anchor.noise.sigma[0] = 0.03;
-    SpaceInformation sum = informationOf(anchor, {4, 0, 1}, {0, 0, 1});
-    EXPECT_TRUE(std::isinf(atKnownHeight(sum).error())) << "one distance is a circle";
-    sum += informationOf(anchor, {0, 3, 1}, {0, 0, 1});
-    EXPECT_NEAR(atKnownHeight(sum).error(), 0.03 * std::sqrt(2.0), 1e-12);
-}
-
 TEST(Dilution, WithoutMeasurementsIsUnbounded) {
     EXPECT_TRUE(std::isinf(FloorInformation().error()));
 }

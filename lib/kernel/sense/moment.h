@@ -19,7 +19,7 @@
 
 namespace ispace {
 
-class UwbFixes;
+class SharedResults;
 
 /// Conditions of all readings of a run.
 struct TakerOptions {
@@ -30,8 +30,8 @@ struct TakerOptions {
     /// Required for cameras; null: no cameras. It outlives the sampler.
     const Photographer* photographer = nullptr;
     MoverVelocities velocities = {};  ///< of the movers whose bodies sensors meet
-    /// Positions that the anchors of one moment share; null: each reading computes its own.
-    std::shared_ptr<UwbFixes> fixes = {};
+    /// Results that the readings of some moments share; null: each reading computes its own.
+    std::shared_ptr<SharedResults> shared = {};
 };
 
 /// The mean motion of a carried sensor over the time since its last reading.

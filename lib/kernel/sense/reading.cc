@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <type_traits>
 
+#include "sense/shared_results.h"
+
 namespace ispace {
 
 namespace {
@@ -133,7 +135,7 @@ void ReadingSampler::Data::prepare(const Laser& laser, const ReadingJob& job) {
 ReadingSampler::ReadingSampler(const Sensors& sensors, RayScenes& worlds,
                                const MovingBodies& bodies, const TakerOptions& options)
     : data_(std::make_unique<Data>(Data{sensors, worlds, bodies, options, {}})) {
-    data_->options.fixes = std::make_shared<UwbFixes>();
+    data_->options.shared = std::make_shared<SharedResults>();
 }
 ReadingSampler::~ReadingSampler() = default;
 

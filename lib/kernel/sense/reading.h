@@ -26,7 +26,6 @@
 #include "sense/selection.h"
 #include "sense/trajectory.h"
 #include "sense/ultrasound_burst.h"
-#include "sense/uwb_ranges.h"
 
 namespace ispace {
 
@@ -61,12 +60,11 @@ struct GateState {
 
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
-using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame, UwbRanges,
+using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame,
                                   AddedReading, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
-using Reading =
-    std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, UwbRanges, AddedReading>;
+using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, AddedReading>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

@@ -368,6 +368,9 @@ const SensorKind Camera::kKind = {
     .is_read = true,
     .is_arranged = true,
     .is_overhead = true,
-    .follows_poses = true};
+    .follows_poses = true,
+    .sight_errors = [](const SensorModel& model, double /*range*/) -> SightErrors {
+        return {0, uniformSigma(1 / std::get<Camera>(model).fx)};
+    }};
 
 }  // namespace ispace

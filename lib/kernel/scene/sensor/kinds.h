@@ -16,15 +16,14 @@
 #include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
 #include "scene/sensor/ultrasound.h"
-#include "scene/sensor/uwb.h"
 
 namespace ispace {
 
 /// Parameters of a sensor of any kind; those on the floor are last. Reports and manuals list kinds
-/// in this order, and those that extensions add among or behind them (SensorKind::listed_before).
+/// in this order, and behind them those that extensions add, in the order in which they are added.
 /// Only this header, the sources of the kinds and the computation of readings distinguish kinds.
 using SensorModel =
-    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, Uwb, AddedSensor, Mat, Gate>;
+    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, AddedSensor, Mat, Gate>;
 
 /// True for parameters in the list, false for those of a kind that an extension adds.
 template <typename Model, typename Models = SensorModel>

@@ -292,6 +292,11 @@ const SensorKind Laser::kKind = {
     },
     .is_read = true,
     .is_arranged = true,
-    .follows_poses = true};
+    .follows_poses = true,
+    .sight_errors = [](const SensorModel& model, double range) -> SightErrors {
+        const Laser& laser = std::get<Laser>(model);
+        return {distanceSigma(laser.noise, range),
+                directionSigma(laser.noise, laser.step.radians())};
+    }};
 
 }  // namespace ispace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/sensor/radar.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/number.h"
@@ -118,6 +119,10 @@ const SensorKind Radar::kKind = {
     .is_read = true,
     .is_arranged = true,
     .follows_poses = true,
+    .sight_errors = [](const SensorModel& model, double range) -> SightErrors {
+        const RangeNoise& noise = std::get<Radar>(model).noise;
+        return {distanceSigma(noise, range), std::max(directionSigma(noise, 0), kMinSigma)};
+    },
     .senses = [](const SensorModel& model, Vec2 velocity,
                  Vec3 direction) { return senses(std::get<Radar>(model), velocity, direction); }};
 

@@ -156,6 +156,12 @@ const SensorKind Ranger::kKind = {
     .field_of_view = fieldOfViewOf<Ranger>,
     .is_read = true,
     .is_arranged = true,
-    .follows_poses = true};
+    .follows_poses = true,
+    .sight_errors = [](const SensorModel& model, double range) -> SightErrors {
+        const Ranger& ranger = std::get<Ranger>(model);
+        const bool is_pinhole = ranger.projection == Projection::Pinhole;
+        const double pixel = is_pinhole ? 1 / ranger.fx() : ranger.fov_x.radians() / ranger.columns;
+        return {distanceSigma(ranger.noise, range), directionSigma(ranger.noise, pixel)};
+    }};
 
 }  // namespace ispace

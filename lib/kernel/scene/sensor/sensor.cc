@@ -130,10 +130,7 @@ std::span<const SensorKind* const> sensorKinds() { return kinds(); }
 void addSensorKind(const SensorKind& kind) {
     assert(!kind.is_read || (kind.measure != nullptr && kind.reading != nullptr));
     if (sensorKind(kind.keyword) != nullptr) return;
-    const auto next = std::find_if(
-        kinds().begin(), kinds().end(),
-        [&kind](const SensorKind* listed) { return listed->keyword == kind.listed_before; });
-    kinds().insert(next, &kind);
+    kinds().push_back(&kind);
 }
 
 const SensorKind* sensorKind(std::string_view keyword) {

@@ -99,6 +99,12 @@ struct DeviceSummary {
 /// The symbol of a sensor on plans and maps.
 enum class SensorSign { Disc, Square, Triangle, Diamond };
 
+/// Errors of one measurement of a point: standard deviations of its distance, metres, and of its
+/// direction, radians; 0: not measured.
+struct SightErrors {
+    double distance = 0, direction = 0;
+};
+
 /// The sector that a plan draws for a sensor, in its frame.
 struct BearingSpan {
     Angle from, to;
@@ -137,9 +143,6 @@ struct SensorKind {
     std::string_view help = {};          ///< of the record
     std::string_view heading_help = {};  ///< of its key `heading`
     std::string_view device_help = {};   ///< of a device file's record; "": there are no devices
-    /// Reports and manuals list a kind that an extension adds before the one with this keyword; "",
-    /// or if the program lacks it: behind all others.
-    std::string_view listed_before = {};
     SensorSign sign = SensorSign::Disc;
     /// Keys besides those that all sensors have.
     void (*add_keys)(std::vector<KeySpec>& keys) = nullptr;
@@ -151,6 +154,8 @@ struct SensorKind {
     SensorModel (*read)(const Record& record, const Record* device) = nullptr;
     /// Looks up the records that its readings depend on. Null: none. \throws FormatError
     void (*look_up)(SensorModel& model, const Record& record, const RoomRecords& room) = nullptr;
+    /// Removes the things of the room that it looked up, unless they change its view. Null: none.
+    void (*forget)(SensorModel& model) = nullptr;
     DeviceSummary (*summary)(const SensorModel& model) = nullptr;
     /// Builds its field of view as a translucent open surface in its frame, two-sided, up to
     /// `reach`. Null: not drawn.
@@ -169,6 +174,11 @@ struct SensorKind {
     bool integrates = false;     ///< a run tells it the mean motion of its carrier: Moment::mean
     /// A point counts as covered if this many of the kind see it.
     std::size_t together = 1;
+    /// A tag on a known plane has a position if this many of the kind measure its distance.
+    std::size_t locates_together = 1;
+    /// Returns the errors of one measurement of a point, by its distance in metres. Null: it
+    /// measures no position.
+    SightErrors (*sight_errors)(const SensorModel& model, double range) = nullptr;
 
     /// Returns true if it detects a person in view, by the velocity over the floor in m/s and the
     /// unit vector from the sensor to the person. Null: its readings do not depend on motion.

@@ -196,6 +196,18 @@ void addNoiseKeys(std::vector<KeySpec>& keys) {
                     .upper = kMax});
 }
 
+double uniformSigma(double width) { return width / std::sqrt(12.0); }
+
+double distanceSigma(const RangeNoise& noise, double range) {
+    const auto [s0, s1, s2] = noise.sigma;
+    const double sigma = std::max(0.0, s0 + range * (s1 + range * s2));
+    return std::max(kMinSigma, std::hypot(sigma, uniformSigma(noise.resolution)));
+}
+
+double directionSigma(const RangeNoise& noise, double step) {
+    return std::hypot(noise.angle_sigma.radians(), uniformSigma(step));
+}
+
 void applyNoise(const Record& record, RangeNoise& noise, Diagnostics& findings) {
     if (record.has("bias")) noise.bias = record.number("bias");
     if (record.has("sigma")) {

@@ -88,6 +88,17 @@ struct RangeNoise {
     friend bool operator==(const RangeNoise&, const RangeNoise&) = default;
 };
 
+/// Standard deviation of a distance without noise, metres.
+constexpr double kMinSigma = 0.001;
+/// Returns the standard deviation of an error that is uniform over a width.
+double uniformSigma(double width);
+/// Returns the standard deviation of a distance: `sigma` and the rounding to `resolution`, at least
+/// kMinSigma.
+double distanceSigma(const RangeNoise& noise, double range);
+/// Returns that of a direction, radians: `angle_sigma` and the rounding to beams or pixels of a
+/// width.
+double directionSigma(const RangeNoise& noise, double step);
+
 /// Adds the keys `bias`, `sigma`, `angle_sigma`, `dropout`, `incidence` and `resolution`, without
 /// defaults.
 void addNoiseKeys(std::vector<KeySpec>& keys);

@@ -124,7 +124,10 @@ const SensorKind Receiver::kKind = {
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,
-    .together = kMinReceivers};
+    .together = kMinReceivers,
+    .sight_errors = [](const SensorModel& model, double range) -> SightErrors {
+        return {distanceSigma(std::get<Receiver>(model).noise, range), 0};
+    }};
 
 const SensorKind Tag::kKind = {.keyword = "tag",
                                .noun = "tag",

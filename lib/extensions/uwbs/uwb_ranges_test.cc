@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/uwb_ranges.h"
-#include "scene/sensor/sensor_keys.h"
+#include "extensions/uwbs/uwb_ranges.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "extensions/uwbs/uwbs_test.h"
+#include "scene/sensor/sensor_keys.h"
+#include "sense/formats/reading_fields.h"
+#include "sense/shared_results.h"
 #include "support/test_readings.h"
 
-namespace ispace {
+namespace ispace::uwbs {
 namespace {
 
 /// Returns the readings of all anchors in a room of 12 m and 2.5 m height.
@@ -21,7 +24,7 @@ std::vector<UwbRanges> rangesIn(const std::string& room, const std::string& layo
     const Scene scene = testing::scene("ispace size=12,12,2.5\n" + room, layout);
     std::vector<UwbRanges> all;
     for (const Reading& reading : testing::readings(scene, options, frame))
-        all.push_back(std::get<UwbRanges>(reading));
+        all.push_back(std::get<AddedReading>(reading).as<UwbRanges>());
     return all;
 }
 
@@ -47,7 +50,7 @@ TEST(UwbRanges, OfAMomentShareThePositionsOfTags) {
     };
     const TakerOptions alone{.noise_seed = 3};
     TakerOptions shared = alone;
-    shared.fixes = std::make_shared<UwbFixes>();
+    shared.shared = std::make_shared<SharedResults>();
     int fixes = 0;
     for (const int frame : {0, 1, 0, 20})
         for (const Sensor& sensor : scene.sensors)
@@ -69,9 +72,10 @@ TEST(UwbRanges, OfAMomentShareThePositionsOfTags) {
     const Moment now{first, first.pose, 0, 0, worlds, bodies, {}, shared};
     const Sensor& last = scene.sensors.back();
     const Moment same{last, last.pose, 0, 0, worlds, bodies, {}, shared};
-    EXPECT_EQ(shared.fixes->at(first.as<Uwb>(), now), shared.fixes->at(last.as<Uwb>(), same));
+    UwbFixes& kept = shared.shared->of<UwbFixes>();
+    EXPECT_EQ(kept.at(first.as<Uwb>(), now), kept.at(last.as<Uwb>(), same));
     const Moment later{last, last.pose, 1, 0, worlds, bodies, {}, shared};
-    EXPECT_NE(shared.fixes->at(first.as<Uwb>(), now), shared.fixes->at(last.as<Uwb>(), later));
+    EXPECT_NE(kept.at(first.as<Uwb>(), now), kept.at(last.as<Uwb>(), later));
 }
 
 constexpr const char* kCrate = "cube at=4,0 size=0.4,0.4,0.99 tag=crate\n";  // its tag: 4,0,1
@@ -183,7 +187,7 @@ TEST(UwbRanges, ThePlanDecidesBetweenMirrorImages) {
             "uwb id=a at=4,-3,1" + heading + "\nuwb id=b at=4,3,2" + heading +
                 "\nuwb id=c at=4,0.5,1.5" + heading + "\n");
         const auto all = testing::readings(scene, {}, 0);
-        return std::get<UwbRanges>(all.front()).tags.at(0).fix.value();
+        return std::get<AddedReading>(all.front()).as<UwbRanges>().tags.at(0).fix.value();
     };
     expect(wide_fix("", " heading=180"), true, "both are possible");
     expect(wide_fix("wall from=5,-4 to=5,4\n", " heading=180"), false, "hidden by a wall");
@@ -296,6 +300,13 @@ TEST(UwbRanges, AllAnchorsComputeThePositionOfTheRangesThatTheyReport) {
     }
 }
 
+TEST(UwbRanges, HaveATopic) {
+    const auto topics = readingKind(modelOf(Uwb())).topics;
+    ASSERT_EQ(topics.size(), 1U);
+    EXPECT_EQ(topics[0].name, "tags");
+    EXPECT_EQ(topics[0].type, RosType::String);
+}
+
 TEST(Uwb, ReadsItsKeys) {
     const auto read = [](const std::string& keys) {
         const Record record = testing::sensorRecord("uwb " + keys);
@@ -325,4 +336,4 @@ TEST(Uwb, ReadsItsKeys) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::uwbs

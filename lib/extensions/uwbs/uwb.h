@@ -1,4 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/uwbs: ultra-wideband anchors, which measure the ranges of tags and locate them.
+// Uses sense and below.
+//
+// Anchors of a room share the lists of its tags and anchors. A reading is a function of pose, time,
+// frame and seed alone, thread-safe; it costs at most O(slots) rays of ranges, and those of the
+// positions, which the anchors of one moment compute once (uwb_ranges.h).
+//
+//     addUwbs();                                        // before the first scene is read
+//     const Sensor sensor = sensorsOf<Uwb>(scene).front();
+//     const double range = sensor.as<Uwb>().max_range;  // metres, in line of sight
 #pragma once
 
 #include <algorithm>
@@ -15,6 +25,10 @@
 namespace ispace {
 
 struct SensorKind;
+
+}  // namespace ispace
+
+namespace ispace::uwbs {
 
 /// Anchors that locate a tag: those that have it in line of sight, at least.
 constexpr std::size_t kMinAnchors = 3;
@@ -71,4 +85,7 @@ Uwb withParameters(Uwb base, const Record& record);
 /// Returns the ball in which an anchor measures in line of sight.
 FieldOfView fieldOfView(const Uwb& uwb, const Pose3& pose);
 
-}  // namespace ispace
+/// Adds the kind, for the program.
+void addUwbs();
+
+}  // namespace ispace::uwbs

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/sensor/uwb.h"
+#include "extensions/uwbs/uwb.h"
 
 #include <vector>
 
 #include "base/number.h"
+#include "extensions/uwbs/uwb_ranges.h"
 #include "scene/devices.h"
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
 #include "scene/sensor/sensor_keys.h"
 
-namespace ispace {
+namespace ispace::uwbs {
 
 Uwb withParameters(Uwb base, const Record& record) {
     Diagnostics findings;
@@ -93,9 +94,17 @@ std::vector<UwbAnchor> anchorsOf(const RoomRecords& room) {
 }
 
 void lookUpTagsAndAnchors(SensorModel& model, const Record& /*record*/, const RoomRecords& room) {
-    Uwb& uwb = std::get<Uwb>(model);
-    uwb.tags = sharedTags(room);
-    uwb.anchors = room.shared<UwbAnchor>([&room] { return anchorsOf(room); });
+    changeModel<Uwb>(model, [&room](Uwb& uwb) {
+        uwb.tags = sharedTags(room);
+        uwb.anchors = room.shared<UwbAnchor>([&room] { return anchorsOf(room); });
+    });
+}
+
+void forgetTagsAndAnchors(SensorModel& model) {
+    changeModel<Uwb>(model, [](Uwb& uwb) {
+        uwb.tags = {};
+        uwb.anchors = {};
+    });
 }
 
 /// Builds a housing with a stub antenna.
@@ -121,18 +130,27 @@ const SensorKind Uwb::kKind = {
     .body = uwbBody,
     .read = readModel<Uwb>,
     .look_up = lookUpTagsAndAnchors,
+    .forget = forgetTagsAndAnchors,
     .summary = [](const SensorModel& model) -> DeviceSummary {
-        const Uwb& uwb = std::get<Uwb>(model);
+        const Uwb& uwb = *tryModel<Uwb>(model);
         return {rangeText(uwb.min_range, uwb.max_range), "360", "-", formatDouble(uwb.rate)};
     },
     .bearings = [](const SensorModel& model) -> BearingSpan {
         const Angle half_turn = Angle::degrees(180);
-        return {-half_turn, half_turn, std::get<Uwb>(model).max_range};
+        return {-half_turn, half_turn, tryModel<Uwb>(model)->max_range};
     },
     .field_of_view = fieldOfViewOf<Uwb>,
     .stopped_by = Surfaces::Solid,
     .is_read = true,
     .is_arranged = true,
-    .follows_poses = true};
+    .follows_poses = true,
+    .locates_together = kMinAnchors,
+    .sight_errors = [](const SensorModel& model, double range) -> SightErrors {
+        return {distanceSigma(tryModel<Uwb>(model)->noise, range), 0};
+    },
+    .measure = measureBy<Uwb>,
+    .reading = &UwbRanges::kKind};
 
-}  // namespace ispace
+void addUwbs() { addSensorKind(Uwb::kKind); }
+
+}  // namespace ispace::uwbs

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/uwb_ranges.h"
+#include "extensions/uwbs/uwb_ranges.h"
 
 #include <algorithm>
 #include <array>
@@ -16,9 +16,10 @@
 #include "geom/predicates.h"
 #include "sense/electronic_tag_place.h"
 #include "sense/noise.h"
+#include "sense/shared_results.h"
 #include "sense/walls_between.h"
 
-namespace ispace {
+namespace ispace::uwbs {
 
 namespace {
 
@@ -288,10 +289,10 @@ std::vector<std::uint8_t> areInSight(std::span<const Near> tags, Point3 at,
 }  // namespace
 
 UwbRanges readingOf(const Uwb& uwb, const Moment& now) {
-    UwbRanges reading{now.time, now.frame, now.pose, {}};
+    UwbRanges reading;
     UwbFixes own;
-    const std::shared_ptr<UwbFixes::Tags> tags =
-        (now.options.fixes != nullptr ? *now.options.fixes : own).at(uwb, now);
+    UwbFixes& fixes = now.options.shared ? now.options.shared->of<UwbFixes>() : own;
+    const std::shared_ptr<UwbFixes::Tags> tags = fixes.at(uwb, now);
     const auto fix_of = [&](std::size_t i, const std::string& tag, Point3 place) {
         {
             const std::lock_guard lock(tags->mutex);
@@ -329,4 +330,4 @@ UwbRanges readingOf(const Uwb& uwb, const Moment& now) {
     return reading;
 }
 
-}  // namespace ispace
+}  // namespace ispace::uwbs

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Readings of ultra-wideband anchors: two-way ranging as in IEEE 802.15.4, by its results, and
+// positions by multilateration (sense/locate.h).
+//
+//     const UwbRanges reading = readingOf(sensor.as<Uwb>(), moment);
+//     for (const UwbRange& one : reading.tags)
+//         if (one.fix) show(one.tag, one.fix->position);  // three anchors have it in sight
 #pragma once
 
 #include <cstddef>
@@ -10,12 +16,17 @@
 #include <string>
 #include <vector>
 
+#include "extensions/uwbs/uwb.h"
+#include "sense/added_reading.h"
 #include "sense/locate.h"
-#include "sense/moment.h"
 
 namespace ispace {
 
 struct ReadingKind;
+
+}  // namespace ispace
+
+namespace ispace::uwbs {
 
 /// Anchors that locate a tag at most: the nearest in line of sight.
 constexpr std::size_t kMaxAnchors = 16;
@@ -30,9 +41,6 @@ struct UwbRange {
 
 /// One round of ranges of an anchor.
 struct UwbRanges {
-    double time = 0;  ///< seconds
-    int frame = 0;
-    Pose3 pose;
     std::vector<UwbRange> tags;  ///< sorted, each once: the nearest of those of one text
 
     static const ReadingKind kKind;
@@ -84,8 +92,8 @@ class UwbFixes {
 /// PositionFix::is_one_of_two is set.
 ///
 /// Noise depends on seed, anchor, tag and frame alone: anchors of one rate compute one position,
-/// and only once with TakerOptions::fixes: at most O(slots) rays an anchor, and
+/// and only once with TakerOptions::shared: at most O(slots) rays an anchor, and
 /// O(tags * anchors) distances a moment.
 UwbRanges readingOf(const Uwb& uwb, const Moment& now);
 
-}  // namespace ispace
+}  // namespace ispace::uwbs

@@ -3,9 +3,10 @@
 #include <algorithm>
 
 #include "base/number.h"
+#include "extensions/uwbs/uwb_ranges.h"
 #include "sense/formats/field_values.h"
 
-namespace ispace {
+namespace ispace::uwbs {
 
 namespace {
 
@@ -193,4 +194,4 @@ constexpr RosTopic kUwbTopics[] = {
 
 const ReadingKind UwbRanges::kKind = {.fields = kUwbFields, .topics = kUwbTopics};
 
-}  // namespace ispace
+}  // namespace ispace::uwbs
