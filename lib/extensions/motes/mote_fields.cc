@@ -57,7 +57,7 @@ FieldValue marginsAsText(const View& reading) {
 FieldValue motesOfRoom(const View& reading) {
     std::vector<std::string> ids;
     for (const MoteRadio& one : reading.sensor.as<Mote>().motes)
-        ids.push_back(idBeside(reading.sensor.id, one.id));
+        ids.push_back(reading.sensor.idBeside(one.id));
     return ids;
 }
 
@@ -67,7 +67,7 @@ FieldValue marginsByMote(const View& reading) {
     auto next = neighbours.begin();  // both are in the order of the scene
     for (const MoteRadio& one : reading.sensor.as<Mote>().motes) {
         const bool is_heard =
-            next != neighbours.end() && next->mote == idBeside(reading.sensor.id, one.id);
+            next != neighbours.end() && next->mote == reading.sensor.idBeside(one.id);
         margins.push_back(is_heard ? next->margin : kNoValue);
         if (is_heard) ++next;
     }

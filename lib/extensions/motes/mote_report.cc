@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -42,14 +40,10 @@ class CarriedMotes {
     std::unordered_map<std::uint32_t, Pose2> poses_;  // of bodies, by their owners
 };
 
-/// Returns an id without its storey.
-std::string_view inRoom(std::string_view id) { return id.substr(id.rfind('/') + 1); }
-
 /// The table of neighbours of a mote: the strongest signals, of equal ones the first in the scene.
 class NeighbourTable {
   public:
-    NeighbourTable(const Mote& mote, const Moment& now)
-        : mote_(mote), now_(now), own_id_(inRoom(now.sensor.id)) {}
+    NeighbourTable(const Mote& mote, const Moment& now) : mote_(mote), now_(now) {}
 
     /// Returns how much stronger a signal over this distance is, without walls, than the weakest
     /// that is heard.
@@ -62,7 +56,7 @@ class NeighbourTable {
                (heard_.size() < Mote::kMostNeighbours || margin >= heard_.front().margin);
     }
     void offer(std::uint32_t number, Point3 from) {
-        if ((mote_.motes.begin() + number)->id == own_id_) return;
+        if ((mote_.motes.begin() + number)->id == now_.sensor.idInRoom()) return;
         const Point3 here = now_.pose.position;
         const double free = freeMargin(length(from - here));
         if (!mayTake(free)) return;
@@ -82,7 +76,7 @@ class NeighbourTable {
         list.reserve(heard_.size());
         for (const Heard& one : heard_)
             list.push_back(
-                {idBeside(now_.sensor.id, (mote_.motes.begin() + one.number)->id), one.margin});
+                {now_.sensor.idBeside((mote_.motes.begin() + one.number)->id), one.margin});
         return list;
     }
 
@@ -97,7 +91,6 @@ class NeighbourTable {
 
     const Mote& mote_;
     const Moment& now_;
-    std::string_view own_id_;
     std::vector<Heard> heard_;  // a heap, the weakest at its front
 };
 
@@ -125,10 +118,6 @@ std::vector<Neighbour> neighboursOf(const Mote& mote, const Moment& now) {
 }
 
 }  // namespace
-
-std::string idBeside(std::string_view sensor, std::string_view mote) {
-    return std::string(sensor.substr(0, sensor.size() - inRoom(sensor).size())).append(mote);
-}
 
 MoteReport readingOf(const Mote& mote, const Moment& now) {
     return {readingOf(mote.meter, now).lux, neighboursOf(mote, now)};

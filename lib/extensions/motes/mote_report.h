@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "extensions/motes/mote.h"
@@ -37,9 +36,5 @@ struct MoteReport {
 /// the axis of the mover's body, at the height of its record. Near motes are tried first, and
 /// far ones only while the table has space for weaker signals.
 MoteReport readingOf(const Mote& mote, const Moment& now);
-
-/// Returns the id of another mote of a sensor's room as the sensor's: with a storey if that has
-/// one. \code idBeside("ground/m1", "m2");  // "ground/m2" \endcode
-std::string idBeside(std::string_view sensor, std::string_view mote);
 
 }  // namespace ispace::motes

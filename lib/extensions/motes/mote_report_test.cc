@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "extensions/motes/motes_test.h"
 #include "scene/sensor/sensor_keys.h"
 #include "sense/formats/reading_fields.h"
+#include "sense/site_sensors.h"
 #include "support/test_readings.h"
 
 namespace ispace::motes {
@@ -41,6 +43,23 @@ std::string heardIn(const std::string& room, const std::string& layout) {
     for (const Neighbour& one : reports.front().neighbours)
         ids.append(ids.empty() ? "" : " ").append(one.mote);
     return ids;
+}
+
+TEST(MoteReport, OfAStoreyNamesItsMotes) {
+    const std::vector scenes = {std::make_shared<const Scene>(
+        testing::scene("ispace size=40,12,2.5\n",
+                       "mote id=a at=-10,0,1 radio=12\nmote id=b at=0,0,1\nmote id=c at=9,0,1\n"))};
+    const std::vector<std::string> ids = {"ground"};
+    const SiteSensors site = sensorsOf(scenes, ids, {});
+    RayScenes worlds(scenes[0]->environment);
+    const MovingBodies bodies(bodiesOf(*scenes[0]));
+    ReadingSampler sampler(site.sensors, worlds, bodies, {});
+    const ReadingJob job{0, 0, 0, site.sensors.read[0].pose, {}};
+    sampler.prepare(job);
+    const Reading reading = sampler.take(job);
+    const auto& report = std::get<AddedReading>(reading).as<MoteReport>();
+    ASSERT_EQ(report.neighbours.size(), 1U) << "not itself";
+    EXPECT_EQ(report.neighbours[0].mote, "ground/b");
 }
 
 TEST(MoteReport, ListsTheMotesInRadioRange) {

@@ -156,7 +156,7 @@ Near takeNearest(std::vector<Near>& heap) {
 }
 
 const Pose3& anchorPose(const UwbAnchor& anchor, const Moment& now) {
-    return anchor.id == now.sensor.id ? now.pose : anchor.pose;
+    return anchor.id == now.sensor.idInRoom() ? now.pose : anchor.pose;
 }
 
 /// Returns the anchors whose range contains a tag, as a heap with the nearest on top.
@@ -206,7 +206,7 @@ std::optional<PositionFix> fixOf(const Uwb& uwb, const std::string& tag, Point3 
     while (!near.empty() && heard.size() < kMaxAnchors) {
         const UwbAnchor& anchor = uwb.anchors.begin()[takeNearest(near).index];
         const Pose3& pose = anchorPose(anchor, now);
-        const auto ranging = rangingOf(anchor.radio, anchor.id, pose.position,
+        const auto ranging = rangingOf(anchor.radio, now.sensor.idBeside(anchor.id), pose.position,
                                        MovingBodies::kNoOwner, tag, place, now);
         if (!ranging || ranging->blocks > 0) continue;
         // Of mirror images, the one in front of the anchors or below them.
@@ -239,7 +239,7 @@ std::shared_ptr<UwbFixes::Tags> UwbFixes::at(const Uwb& uwb, const Moment& now) 
     };
     const bool is_moved =
         std::any_of(uwb.anchors.begin(), uwb.anchors.end(), [&](const UwbAnchor& anchor) {
-            return anchor.id == now.sensor.id && anchor.pose != now.pose;
+            return anchor.id == now.sensor.idInRoom() && anchor.pose != now.pose;
         });
     if (is_moved) return tags_of();
     const std::lock_guard lock(mutex_);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "scene/sensor/sensor_keys.h"
 #include "sense/formats/reading_fields.h"
 #include "sense/shared_results.h"
+#include "sense/site_sensors.h"
 #include "support/test_readings.h"
 
 namespace ispace::uwbs {
@@ -298,6 +301,33 @@ TEST(UwbRanges, AllAnchorsComputeThePositionOfTheRangesThatTheyReport) {
             EXPECT_LT(length(one.tags[0].fix->position - expected->position), 1e-6);
         }
     }
+}
+
+TEST(UwbRanges, OfAStoreyAreThoseOfItsPositions) {
+    const std::vector<Point3> at = {{-5, -5, 2.2}, {5, -5, 2.3}, {5, 5, 1.2}, {-5, 5, 2.4}};
+    std::string anchors;
+    for (const Point3 p : at)
+        anchors += "uwb at=" + std::to_string(p.x) + ',' + std::to_string(p.y) + ',' +
+                   std::to_string(p.z) + " sigma=0.05\n";
+    const std::vector scenes = {std::make_shared<const Scene>(
+        testing::scene("ispace size=12,12,2.5\n" + std::string(kCrate), anchors))};
+    const std::vector<std::string> ids = {"ground"};
+    const SiteSensors site = sensorsOf(scenes, ids, {});
+    RayScenes worlds(scenes[0]->environment);
+    const MovingBodies bodies(bodiesOf(*scenes[0]));
+    ReadingSampler sampler(site.sensors, worlds, bodies, {.noise_seed = 8});
+    std::vector<Hearing> heard;
+    std::optional<PositionFix> fix;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const ReadingJob job{i, 0, 0, site.sensors.read[i].pose, {}};
+        sampler.prepare(job);
+        const UwbRange range = std::get<AddedReading>(sampler.take(job)).as<UwbRanges>().tags.at(0);
+        heard.push_back({at[i], {0, 0, -1}, Angle::degrees(360), range.range, 0.05});
+        fix = range.fix;
+    }
+    const auto expected = locate(heard, {3, 0, 2.5});
+    ASSERT_TRUE(fix && expected);
+    EXPECT_LT(length(fix->position - expected->position), 1e-6);
 }
 
 TEST(UwbRanges, HaveATopic) {

@@ -58,6 +58,7 @@ void addSensors(const NamedScene& room, const std::vector<std::string>& globs, S
         std::vector<Sensor>& list = sensor.is<Receiver>() ? sensors.receivers : sensors.read;
         list.push_back(sensor);
         list.back().id.insert(0, room.prefix);
+        list.back().room = room.prefix.size();
     };
     for (const Sensor& sensor : room.scene->sensors)
         if (kindOf(sensor.model).is_read && isSelected(room.prefix + sensor.id, globs)) add(sensor);

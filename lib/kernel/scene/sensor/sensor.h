@@ -43,7 +43,16 @@ struct Sensor {
     Pose3 pose;
     std::optional<Mount> mount = {};
     std::optional<std::size_t> person = {};  ///< its carrier: index among the scene's people
+    /// Length of the room in its id: of "ground/" in a list of the sensors of several rooms.
+    std::size_t room = 0;
 
+    /// Returns its id in the scene of its room.
+    [[nodiscard]] std::string_view idInRoom() const { return std::string_view(id).substr(room); }
+    /// Returns the id of another thing of its room, written as its own: "ground/m2" beside
+    /// "ground/m1".
+    [[nodiscard]] std::string idBeside(const std::string& other) const {
+        return id.substr(0, room) + other;
+    }
     template <typename Model>
     [[nodiscard]] bool is() const {
         return tryAs<Model>() != nullptr;
