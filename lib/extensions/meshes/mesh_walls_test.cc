@@ -82,6 +82,20 @@ TEST(MeshWalls, HollowShellAndInnerSurface) {
     EXPECT_NEAR(areaOf(readMeshWalls(surface, cutAt(1.5), sceneSchemas())), 19, 1e-5);
 }
 
+TEST(MeshWalls, WallsAndFurnitureAtAnInnerSurface) {
+    const testing::TestFolder folder;
+    const auto area_with = [&](double x0, double y0, double x1, double y1) {
+        const std::string path =
+            Boxes().add(0, 0, 0, 8, 6, 3, true).add(x0, y0, 0, x1, y1, 2).write(folder, "room.obj");
+        return areaOf(readMeshWalls(path, cutAt(1), sceneSchemas()));
+    };
+    EXPECT_NEAR(area_with(4.9, 0, 5.1, 6), 4.9 * 6, 1e-5);       // divides the room
+    EXPECT_NEAR(area_with(4.9, -0.1, 5.1, 6.1), 4.9 * 6, 1e-5);  // through its surface
+    EXPECT_NEAR(area_with(4.9, 0, 5.1, 2), 48 - 0.2 * 2, 1e-5);  // a stub
+    EXPECT_NEAR(area_with(7, 5, 8, 6), 48 - 1, 1e-5);            // a box in a corner
+    EXPECT_NEAR(area_with(7, 2, 8.05, 3), 48 - 1, 1e-5);         // and one in the surface
+}
+
 TEST(MeshWalls, UnitsAndHeights) {
     const testing::TestFolder folder;
     const std::string path = Boxes().add(0, 0, 0, 4000, 2500, 3000).write(folder, "room_mm.obj");

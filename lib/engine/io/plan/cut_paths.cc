@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cuts of meshes as walls. Solids that touch are united in groups, so that a wall running into
-// another leaves no line across it; solids apart from each other stay apart, since a union would
-// swallow furniture in a room that is modelled by its inner surface.
+// Cuts of meshes as walls. Walls that touch are united in groups, so that a wall running into
+// another leaves no line across it. Solids wider than a wall stay as they are: the surface of a
+// room is a closed curve too, and a union with it would swallow walls and furniture at it.
 #include "io/plan/cut_paths.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -14,6 +17,7 @@
 #include "geom/arrangement.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
+#include "io/plan/plan_rooms.h"
 
 namespace ispace {
 
@@ -22,12 +26,18 @@ namespace {
 // Edges cross their neighbours, and some of other solids; uniting more of them takes work.
 constexpr std::size_t kFreeCrossings = 8, kUnitsPerCrossing = 16;
 
-/// Unites solids that meet at edges, such as walls that run into each other. Keeps a solid inside
-/// another, e.g. furniture in a room modelled by its inner surface.
+/// Unites solids no wider than a wall that meet at edges. Keeps wider ones, and a solid inside
+/// another.
 class Joiner {
   public:
-    Joiner(std::vector<Polygon> solids, Budget& work) : solids_(std::move(solids)), work_(work) {
-        for (std::size_t i = 0; i < solids_.size(); ++i) group_.push_back(i);
+    /// \param extent of the plan
+    Joiner(std::vector<Polygon> solids, double extent, Budget& work)
+        : solids_(std::move(solids)),
+          widest_(widestWall(extent)),
+          is_wide_(solids_.size()),
+          work_(work) {
+        group_.resize(solids_.size());
+        std::iota(group_.begin(), group_.end(), std::size_t{0});
     }
 
     std::vector<Polygon> join() {
@@ -69,11 +79,23 @@ class Joiner {
                     throw FormatError(Diagnostic{
                         "", 0, 0, "crossings of the cut's outlines make " + work_.excess()});
                 const std::size_t a = rootOf(solid_of[i]), b = rootOf(solid_of[k]);
+                if (a == b || isWide(solid_of[i]) || isWide(solid_of[k])) continue;
                 group_[std::max(a, b)] = std::min(a, b);
             }
     }
 
+    bool isWide(std::size_t i) {
+        if (!is_wide_[i]) {
+            const std::vector<Region> parts = unite(std::span(&solids_[i], 1));
+            is_wide_[i] = std::ranges::any_of(
+                parts, [this](const Region& part) { return !isNarrow(part, widest_); });
+        }
+        return *is_wide_[i];
+    }
+
     std::vector<Polygon> solids_;
+    double widest_;                             // of walls
+    std::vector<std::optional<bool>> is_wide_;  // those that are known
     std::vector<std::size_t> group_;
     Budget& work_;
 };
@@ -81,9 +103,11 @@ class Joiner {
 }  // namespace
 
 std::vector<PlanPath> cutPaths(Slice slice, Budget& work) {
+    const Box2 extent = boundsOf(slice.lines());
     std::vector<PlanPath> paths;
     // Ends of triangles are not corners: the plan's opening finder would use them.
-    for (Polygon& outline : simplified(Joiner(std::move(slice.solids), work).join(), kMeshStraight))
+    Joiner joiner(std::move(slice.solids), std::max(extent.width(), extent.depth()), work);
+    for (Polygon& outline : simplified(joiner.join(), kMeshStraight))
         paths.push_back({std::move(outline), true, 0});
     for (const Segment2& sheet : slice.sheets) paths.push_back({{sheet.a, sheet.b}, false, 0});
     return paths;

@@ -14,9 +14,8 @@ namespace ispace {
 constexpr double kMeshStraight = 0.001;
 
 /// Returns the cut through meshes as lines of a plan, straight within kMeshStraight: closed paths
-/// of solids, then open ones of sheets. Solids that meet at edges, such as walls that run into each
-/// other, are united; a solid inside another remains, e.g. furniture in a room modelled by its
-/// inner surface.
+/// of solids, then open ones of sheets. Walls that run into each other are united. A solid wider
+/// than a wall, such as the inner surface of a room, and what stands at it or in it remain apart.
 /// \param work pays for outlines that cross each other often
 /// \throws FormatError (without file and line) if the work is used up
 std::vector<PlanPath> cutPaths(Slice slice, Budget& work);

@@ -153,6 +153,18 @@ bool hasWithin(std::span<const Segment2> lines, const SegmentGrid& grid, Point2 
 
 }  // namespace
 
+double widestWall(double extent) { return std::min(kMaxWall, extent / kWallShare); }
+
+bool isNarrow(const Region& face, double widest) {
+    const Box2 box = bounds(face.outline);
+    if (std::min(box.width(), box.depth()) < widest) return true;
+    const Point2 p = interiorPoint(face);
+    bool is_narrow = false;
+    face.forEachEdge(
+        [&](const Segment2& edge) { is_narrow = is_narrow || distance(p, edge) < widest / 2; });
+    return is_narrow;
+}
+
 Point2 clearPoint(const Region& face, std::span<const Segment2> lines) {
     Point2 best = interiorPoint(face);
     double best_clear = distanceTo(lines, best);
@@ -229,7 +241,7 @@ void PlanFaces::takeFaces(std::span<const Segment2> doors) {
         all.add(boxes_.back().low);
         all.add(boxes_.back().high);
     }
-    thinnest_ = std::min(kMaxWall, std::max(all.width(), all.depth()) / kWallShare) / 2;
+    widest_wall_ = widestWall(std::max(all.width(), all.depth()));
     makeGroups(doors);
 }
 
@@ -287,15 +299,8 @@ const PlanFaces::Group* PlanFaces::groupAt(Point2 p) const {
 }
 
 bool PlanFaces::isHollow(const Group& group) const {
-    return std::all_of(group.faces.begin(), group.faces.end(), [this](std::size_t i) {
-        const Box2& box = boxes_[i];
-        if (std::min(box.width(), box.depth()) < 2 * thinnest_) return true;
-        const Point2 p = interiorPoint(faces_[i]);
-        bool is_thin = false;
-        faces_[i].forEachEdge(
-            [&](const Segment2& edge) { is_thin = is_thin || distance(p, edge) < thinnest_; });
-        return is_thin;
-    });
+    return std::all_of(group.faces.begin(), group.faces.end(),
+                       [this](std::size_t i) { return isNarrow(faces_[i], widest_wall_); });
 }
 
 std::vector<Point2> PlanFaces::wallCorners() const {

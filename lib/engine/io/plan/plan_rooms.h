@@ -86,10 +86,17 @@ class PlanFaces {
     std::vector<Region> faces_;
     std::vector<Box2> boxes_;
     std::vector<Group> groups_;
-    double thinnest_ = 0;  // radius of the smallest disc that must fit into a room
+    double widest_wall_ = 0;
 };
 
 /// Finds a point of the face away from its edges and from lines within it.
+/// Returns the diameter of the largest disc between the two lines of a wall in a plan of this
+/// extent: 0.5 m, or a twelfth of the extent, whatever its scale.
+double widestWall(double extent);
+
+/// Returns true for a face between the two lines of a wall: no disc wider than `widest` fits.
+bool isNarrow(const Region& face, double widest);
+
 Point2 clearPoint(const Region& face, std::span<const Segment2> lines);
 
 /// Computes whether each line bounds a room of the regions, or lies in one with its middle or an
