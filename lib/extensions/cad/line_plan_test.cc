@@ -68,5 +68,16 @@ TEST(LinePlan, BlocksAndCrossingsShareOneBudget) {
         << message;
 }
 
+/// Two rooms of 5 m x 6 m, and a door in the wall between them, which is a line.
+TEST(LinePlan, FloorThatADiscReachesGoesThroughDoors) {
+    ImportOptions options;
+    options.reachable = 0.2;
+    const Document plan = readDxf(drawing(rectangle("WALL", 0, 0, 10, 6) +
+                                              line("WALL", 5, 0, 5, 6) + line("DOOR", 5, 2, 5, 2.9),
+                                          "", 6),
+                                  "plan.dxf", options, sceneSchemas());
+    EXPECT_NEAR(environmentOf(plan).indoor().area(), 59.93, 0.01);
+}
+
 }  // namespace
 }  // namespace ispace::cad

@@ -262,6 +262,23 @@ TEST(ReachedFloor, ThroughDoorsIntoTheNextRoom) {
     EXPECT_NEAR(totalArea(reachedFloor(rooms, walls, {1, 1}, 0.3)), 12 - 4 * cornerLoss(0.3), 0.01);
 }
 
+TEST(ReachedFloor, OutlinesAreOpenAtDoorsBetweenPieces) {
+    const Region left{{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, {}};
+    const Region right{{{4, 0}, {7, 0}, {7, 3}, {4, 3}}, {}};
+    const std::vector<Region> pieces{left, right};
+    const std::vector<Segment2> doors{{{4, 1}, {4, 2}}, {{0, 1}, {0, 2}}};
+    const auto outlines = reachedOutlines(pieces, doors, ampleWork());
+    ASSERT_EQ(outlines.size(), 2U);
+    EXPECT_EQ(outlines[0].points,
+              (Polygon{{4, 2}, {4, 3}, {0, 3}, {0, 0}, {4, 0}, {4, 1}}));  // the way out is shut
+    EXPECT_FALSE(outlines[0].closed);
+    EXPECT_EQ(outlines[1].points, (Polygon{{4, 1}, {4, 0}, {7, 0}, {7, 3}, {4, 3}, {4, 2}}));
+    const auto shut = reachedOutlines(pieces, {}, ampleWork());
+    ASSERT_EQ(shut.size(), 2U);
+    EXPECT_TRUE(shut[0].closed);
+    EXPECT_EQ(shut[0].points, left.outline);
+}
+
 TEST(ReachedFloor, RoundAPillar) {
     Region hall = kHall;
     hall.holes = {{{3, 2}, {3, 3}, {5, 3}, {5, 2}}};

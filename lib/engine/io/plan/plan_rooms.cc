@@ -294,7 +294,7 @@ class RoomChooser {
         return open;
     }
 
-    [[nodiscard]] std::vector<Region> reach(const PlanRooms& rooms, double radius) const {
+    [[nodiscard]] std::vector<PlanPath> reach(const PlanRooms& rooms, double radius) const {
         std::vector<Segment2> walls = withoutPassages(lines_, plan_.doors, work_);
         walls.insert(walls.end(), rooms.closing.begin(), rooms.closing.end());
         std::vector<Region> reached;
@@ -319,7 +319,7 @@ class RoomChooser {
         }
         out_.note("a disc of " + lengthText(radius) + " m reaches " + areaText(floor) + " of " +
                   areaText(rooms.area()));
-        return reached;
+        return reachedOutlines(reached, plan_.doors, work_);
     }
 
     void report(const RoomAttempt& taken, PlanRooms& rooms) {
@@ -370,7 +370,7 @@ PlanRooms chooseRooms(const PlanWalls& plan, const ImportOptions& options, Budge
 }
 
 void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportRecords& out) {
-    for (const Region& floor : rooms.reached) out.outline(floor);
+    for (const PlanPath& outline : rooms.reached) out.fence(outline);
     if (rooms.reached.empty())
         for (const Segment2& line : rooms.closing)
             out.fence({{wholeMicrometres(line.a), wholeMicrometres(line.b)}, false, 0});
@@ -381,7 +381,8 @@ void writeRooms(const PlanRooms& rooms, const ImportOptions& options, ImportReco
 }
 
 std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
-                                      std::span<const Segment2> passages, Budget& work) {
+                                      std::span<const Segment2> passages, Budget& work,
+                                      double reach) {
     const NearSegments search(passages, work);
     std::vector<Segment2> rest;
     for (const Segment2& line : lines) {
@@ -389,13 +390,12 @@ std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
         if (line.a == line.b) continue;
         const auto share = [&](Point2 p) { return dot(p - line.a, along) / dot(along, along); };
         std::vector<std::pair<double, double>> open;
-        for (const std::size_t i : search.near(bounds(line), kOnLine)) {
+        for (const std::size_t i : search.near(bounds(line), reach)) {
             auto [from, to] = std::minmax({share(passages[i].a), share(passages[i].b)});
             from = std::max(from, 0.0);
             to = std::min(to, 1.0);
             const Point2 a = line.a + from * along, b = line.a + to * along;
-            if (from < to && distance(a, passages[i]) <= kOnLine &&
-                distance(b, passages[i]) <= kOnLine)
+            if (from < to && distance(a, passages[i]) <= reach && distance(b, passages[i]) <= reach)
                 open.emplace_back(from, to);
         }
         std::sort(open.begin(), open.end());

@@ -19,6 +19,7 @@
 #include "geom/planar_map.h"
 #include "geom/polygon.h"
 #include "io/import_records.h"
+#include "io/plan/plan_lines.h"
 
 namespace ispace {
 
@@ -89,7 +90,6 @@ class PlanFaces {
     double widest_wall_ = 0;
 };
 
-/// Finds a point of the face away from its edges and from lines within it.
 /// Returns the diameter of the largest disc between the two lines of a wall in a plan of this
 /// extent: 0.5 m, or a twelfth of the extent, whatever its scale.
 double widestWall(double extent);
@@ -97,6 +97,7 @@ double widestWall(double extent);
 /// Returns true for a face between the two lines of a wall: no disc wider than `widest` fits.
 bool isNarrow(const Region& face, double widest);
 
+/// Finds a point of the face away from its edges and from lines within it.
 Point2 clearPoint(const Region& face, std::span<const Segment2> lines);
 
 /// Computes whether each line bounds a room of the regions, or lies in one with its middle or an
@@ -123,9 +124,16 @@ bool payForCrossings(double crossings, std::size_t lines, RoomChoice rooms, Budg
 std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const Segment2> walls,
                                  Point2 start, double radius);
 
+/// Returns the outlines of pieces of reachedFloor(), open where doors join two of them. A wall
+/// without thickness between two pieces is on both outlines.
+std::vector<PlanPath> reachedOutlines(std::span<const Region> pieces,
+                                      std::span<const Segment2> doors, Budget& work);
+
 /// Returns the lines without the parts that passages cover, as doors cover walls.
+/// \param reach distance of a passage from the lines that it covers
 std::vector<Segment2> withoutPassages(std::span<const Segment2> lines,
-                                      std::span<const Segment2> passages, Budget& work);
+                                      std::span<const Segment2> passages, Budget& work,
+                                      double reach = kOnLine);
 
 /// A plan of lines before its rooms are chosen.
 struct PlanWalls {
@@ -143,7 +151,7 @@ struct PlanWalls {
 struct PlanRooms {
     std::vector<PlanRegion> regions;  ///< empty: no room is enclosed
     std::vector<Segment2> closing;    ///< lines that close gaps in their walls
-    std::vector<Region> reached;      ///< floor that a disc reaches, if requested
+    std::vector<PlanPath> reached;    ///< reachedOutlines() of a disc, if requested
     bool writes_inside = true;        ///< false: another input has the inside points
     bool is_frame = false;            ///< the room is a rectangle around the whole drawing
 

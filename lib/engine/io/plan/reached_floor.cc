@@ -13,6 +13,7 @@
 
 #include "geom/arrangement.h"
 #include "geom/polygon.h"
+#include "io/plan/plan_lines.h"
 #include "io/plan/plan_rooms.h"
 
 namespace ispace {
@@ -29,8 +30,8 @@ constexpr double kTolerance = 0.01;
 /// the radius.
 constexpr double kSliver = 0.01;
 
-/// Outlines may move by this, in metres.
-constexpr double kSimplify = 2e-5;
+/// Outlines may move by this, in metres, so that they lie this near to doors.
+constexpr double kSimplify = 2e-5, kAtDoor = 5 * kSimplify;
 
 /// Returns all points within the radius of the segment, arcs by chords.
 Polygon capsule(const Segment2& s, double radius) {
@@ -112,6 +113,88 @@ std::vector<Region> reachedFloor(std::span<const Region> rooms, std::span<const 
             if (!isSliver(piece, radius)) reached.push_back(normalised(piece, kSimplify));
     }
     return reached;
+}
+
+namespace {
+
+/// Returns the parts of doors that lie on the outlines of two pieces.
+std::vector<Segment2> passagesBetween(std::span<const Region> pieces,
+                                      std::span<const Segment2> doors, Budget& work) {
+    std::vector<Segment2> edges;
+    for (const Region& piece : pieces)
+        piece.forEachEdge([&edges](const Segment2& edge) { edges.push_back(edge); });
+    const NearSegments search(edges, work);
+    std::vector<Segment2> passages;
+    for (const Segment2& door : doors) {
+        const Vec2 along = door.b - door.a;
+        const auto share = [&](Point2 p) {
+            return std::clamp(dot(p - door.a, along) / dot(along, along), 0.0, 1.0);
+        };
+        const auto at = [&](double s) { return door.a + s * along; };
+        std::vector<std::pair<double, int>> ends;  // of edges on the door, and their beginnings
+        for (const std::size_t i : search.near(bounds(door), kAtDoor)) {
+            const auto [from, to] = std::minmax({share(edges[i].a), share(edges[i].b)});
+            if (!(from < to) || distance(at(from), edges[i]) > kAtDoor ||
+                distance(at(to), edges[i]) > kAtDoor)
+                continue;
+            ends.emplace_back(from, 1);
+            ends.emplace_back(to, -1);
+        }
+        std::sort(ends.begin(), ends.end());
+        int pieces_here = 0;
+        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+            pieces_here += ends[i].second;
+            const Segment2 part{at(ends[i].first), at(ends[i + 1].first)};
+            if (pieces_here >= 2 && distance(part.a, part.b) > kAtDoor) passages.push_back(part);
+        }
+    }
+    return passages;
+}
+
+/// Joins lines of a closed curve, in its order, where one begins at the end of another.
+std::vector<PlanPath> chained(const std::vector<Segment2>& lines) {
+    const auto begins = [&lines](std::size_t i) {
+        return lines[i].a != lines[i == 0 ? lines.size() - 1 : i - 1].b;
+    };
+    std::size_t first = 0;
+    while (first < lines.size() && !begins(first)) ++first;
+    std::vector<PlanPath> paths;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const Segment2& line = lines[(first + i) % lines.size()];
+        if (i == 0 || begins((first + i) % lines.size())) paths.push_back({{line.a}, false, 0});
+        paths.back().points.push_back(line.b);
+    }
+    return paths;
+}
+
+double lengthOf(const PlanPath& path) {
+    double sum = 0;
+    for (std::size_t i = 0; i < path.pieceCount(); ++i) {
+        const auto [a, b] = path.piece(i);
+        sum += distance(a, b);
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::vector<PlanPath> reachedOutlines(std::span<const Region> pieces,
+                                      std::span<const Segment2> doors, Budget& work) {
+    const std::vector<Segment2> passages = passagesBetween(pieces, doors, work);
+    std::vector<PlanPath> outlines;
+    for (const Region& piece : pieces)
+        for (Polygon& curve : curvesOf(piece)) {
+            std::vector<Segment2> edges;
+            forEachEdge(curve, [&edges](const Segment2& edge) { edges.push_back(edge); });
+            const std::vector<Segment2> rest = withoutPassages(edges, passages, work, kAtDoor);
+            if (rest == edges) {
+                outlines.push_back({std::move(curve), true, 0});
+                continue;
+            }
+            for (PlanPath& path : chained(rest))
+                if (lengthOf(path) > kAtDoor) outlines.push_back(std::move(path));
+        }
+    return outlines;
 }
 
 }  // namespace ispace
