@@ -79,5 +79,33 @@ TEST(LinePlan, FloorThatADiscReachesGoesThroughDoors) {
     EXPECT_NEAR(environmentOf(plan).indoor().area(), 59.93, 0.01);
 }
 
+double areaOf(const std::string& entities) {
+    return environmentOf(readDxf(drawing(entities, "", 6), "plan.dxf", {}, sceneSchemas()))
+        .indoor()
+        .area();
+}
+
+// The space between the lines of a wall is floor in doorways alone, though the lines run on.
+TEST(LinePlan, DoorsOverWallsOfTwoLines) {
+    const std::string room = rectangle("WALL", 0, 0, 10, 6);
+    const std::string outside = room + rectangle("WALL", -0.2, -0.2, 10.2, 6.2);
+    EXPECT_NEAR(areaOf(outside + rectangle("DOOR", 3, -0.2, 4, 0)), 60 + 0.2, 1e-6);
+    const std::string partition =
+        room + line("WALL", 4.9, 0, 4.9, 6) + line("WALL", 5.1, 0, 5.1, 6);
+    const double two_rooms = 60 - 0.2 * 6 + 0.2 * 0.9;
+    EXPECT_NEAR(areaOf(partition + rectangle("DOOR", 4.9, 2, 5.1, 2.9)), two_rooms, 1e-6);
+    // A swing at one of the lines.
+    EXPECT_NEAR(areaOf(partition + line("DOOR", 4.9, 2, 4, 2) + arc("DOOR", 4.9, 2, 0.9, 90, 180)),
+                two_rooms, 1e-6);
+    // Jambs that are drawn remain the only ones.
+    EXPECT_NEAR(areaOf(partition + line("WALL", 4.9, 2, 5.1, 2) + line("WALL", 4.9, 2.9, 5.1, 2.9) +
+                       rectangle("DOOR", 4.9, 2, 5.1, 2.9)),
+                two_rooms, 1e-6);
+    // A cupboard behind a door stays one.
+    EXPECT_NEAR(areaOf(room + line("WALL", 9.6, 0, 9.6, 6) + line("WALL", 9.6, 1.2, 10, 1.2) +
+                       line("DOOR", 9.6, 0.2, 9.6, 1.1)),
+                9.6 * 6 + 0.4 * 1.2, 1e-6);
+}
+
 }  // namespace
 }  // namespace ispace::cad

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Imports a plan of lines: pays for crowded lines, takes drawn doors out, joins ends, finds
-// openings, simplifies, chooses rooms and writes their walls as fences. Openings are found anew
-// after each step that moves lines, so they always lie on the walls that are written.
+// openings, simplifies, adds jambs, chooses rooms and writes their walls as fences. Openings are
+// found anew after each step that moves lines, so they always lie on the walls that are written.
 #include "io/plan/line_plan.h"
 
 #include <algorithm>
@@ -77,8 +77,9 @@ class LinePlan {
         std::vector<PlanShape> doors = std::move(shapes.doors);
         doors.insert(doors.end(), std::make_move_iterator(drawn.swings.begin()),
                      std::make_move_iterator(drawn.swings.end()));
+        std::vector<double> thickness;
         const auto find = [&] {
-            std::vector<double> thickness;
+            thickness.clear();
             if (!sizes_)
                 for (const PlanPath& path : paths_)
                     thickness.insert(thickness.end(), path.pieceCount(), path.thickness);
@@ -97,6 +98,11 @@ class LinePlan {
         openings_ = std::move(found.openings);
         unused_symbols_ = found.unused;
         lost_ = std::move(found.lost);
+        if (!sizes_) {
+            for (PlanPath& jamb : addJambs(openings_, pieces_, thickness, budget))
+                paths_.push_back(std::move(jamb));
+            pieces_ = pathPieces(paths_);
+        }
         keepRooms(options, drawing, budget, out);
     }
 

@@ -98,6 +98,13 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
 
 /// Doors that a drawing shows among its walls.
 struct DrawnDoors {
+/// Returns lines across walls of two lines at the ends of doors, where the lines run on behind the
+/// symbol, and adds the openings of these doors that the other line lacks. So the space between the
+/// lines of a wall is no floor but in the doorway.
+/// \param thickness as of findOpenings()
+std::vector<PlanPath> addJambs(std::vector<PlanOpening>& openings, std::span<const Segment2> walls,
+                               std::span<const double> thickness, Budget& work);
+
     std::vector<PlanShape> swings;  ///< one for each leaf
     std::vector<PlanPath> walls;    ///< without leaves and swings
 };
