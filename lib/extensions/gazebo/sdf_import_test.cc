@@ -10,6 +10,7 @@
 #include "base/number.h"
 #include "extensions/gazebo/gazebo.h"
 #include "extensions/meshes/meshes_test.h"
+#include "geom/curve.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "support/test_folder.h"
@@ -100,6 +101,28 @@ TEST(SdfImport, SpheresStandAndShapesThatAreNotReadWarn) {
                   .find("polyline off the floor (1)"),
               std::string::npos);
     EXPECT_EQ(warnings(shape("4 3 0 0 0 0", "<plane><normal>0 0 1</normal></plane>")), "");
+}
+
+TEST(SdfImport, EllipticPolylinesAreCylinders) {
+    const auto record = [](const std::string& pose, const Polygon& outline) {
+        std::string points;
+        for (const Point2 p : outline)
+            points += "<point>" + formatDouble(p.x) + ' ' + formatDouble(p.y) + "</point>";
+        return recordsOf(worldOf("<model name='a'><pose>" + pose +
+                                 "</pose><link name='l'><collision name='c'><geometry><polyline>" +
+                                 points +
+                                 "<height>0.5</height></polyline></geometry></collision>"
+                                 "</link></model>"));
+    };
+    const Ellipse oval({0, 0}, 1.6, 1, Angle());
+    EXPECT_EQ(record("1 2 0 0 0 0", outlineOf(oval)), "cylinder id=a at=1,2 size=1.6,1,0.5\n");
+    EXPECT_EQ(record("1 2 0.7 0 0 1.5708", outlineOf(oval)),
+              "cylinder id=a at=1,2,0.7 heading=90 size=1.6,1,0.5\n");
+    EXPECT_EQ(record("1 2 0 0 0 0", outlineOf(Ellipse({0, 0}, 1, 1, Angle()))),
+              "cylinder id=a at=1,2 size=1,1,0.5\n");
+    Polygon dented = outlineOf(oval);
+    dented[3] = Point2() + 0.9 * (dented[3] - Point2());
+    EXPECT_TRUE(record("1 2 0 0 0 0", dented).starts_with("fence id=a "));
 }
 
 TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {

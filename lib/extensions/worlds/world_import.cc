@@ -85,9 +85,13 @@ class WorldImporter {
 
     void sortShapes() {
         for (WorldShape& shape : world_.shapes) {
-            if (auto* polyline = std::get_if<WorldPolyline>(&shape.shape))
-                addPolyline(shape, *polyline);
-            else if (const auto* box = std::get_if<WorldBox>(&shape.shape))
+            if (auto* polyline = std::get_if<WorldPolyline>(&shape.shape)) {
+                if (const auto block = blockOf(shape, *polyline))
+                    sortBlock(block, shape, {block->length, block->width, polyline->height});
+                else
+                    addPolyline(shape, *polyline);
+            }
+            if (const auto* box = std::get_if<WorldBox>(&shape.shape))
                 sortBlock(blockOf(shape, *box), shape, box->size);
             else if (const auto* cylinder = std::get_if<WorldCylinder>(&shape.shape))
                 sortBlock(blockOf(shape, *cylinder), shape,

@@ -45,6 +45,9 @@ struct WorldBlock {
 /// Converts a box or cylinder to a block; std::nullopt if it is tilted.
 std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldBox& box);
 std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldCylinder& cylinder);
+/// Converts a polyline that is the outline of an ellipse, as this program writes round things;
+/// std::nullopt for another form, or if it is tilted.
+std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldPolyline& polyline);
 
 /// A wall of a world, as lines of a plan.
 struct WorldWall {
@@ -98,8 +101,9 @@ std::vector<WorldMeshCut> wallsAmong(
 ///
 /// - Upright boxes on the floor, at most 0.5 m thick, three times as long and twice as high, become
 /// walls; ends within the thickness of another wall are moved onto its mid-line, and the
-/// room is chosen by chooseRooms(). Other upright boxes become cubes, upright cylinders cylinders,
-/// polylines on the floor closed fences. Walls have their openings, and doors join rooms.
+/// room is chosen by chooseRooms(). Other upright boxes become cubes, upright cylinders and
+/// elliptic polylines cylinders, other polylines on the floor closed fences. Walls have their
+/// openings, and doors join rooms.
 /// - Meshes become `mesh` records if their files are there, and are else left out with a warning.
 /// Where boxes and polylines enclose no room, or with ImportOptions::slice_walls, those that bound
 /// one are cut into walls, see wallsAmong().

@@ -10,6 +10,7 @@
 #include <compare>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -169,6 +170,64 @@ std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldCylinder& 
                       {},
                       false,
                       shape.line};
+}
+
+std::optional<WorldBlock> blockOf(const WorldShape& shape, const WorldPolyline& polyline) {
+    constexpr std::size_t kMinCorners = 12;
+    constexpr double kEven = 0.01;  // share by which the outline may leave the ellipse
+    const Polygon& points = polyline.points;
+    const Eigen::Isometry3d& pose = shape.world_from_shape;
+    if (points.size() < kMinCorners || !isUpright(pose.linear().col(2)) || pose.linear()(2, 2) < 0)
+        return std::nullopt;
+    // The ellipse with the second moments of the polygon.
+    const double area = signedArea(points);
+    if (area == 0) return std::nullopt;
+    Vec2 first;
+    const Point2 origin = points.front();
+    double xx = 0, xy = 0, yy = 0;
+    forEachEdge(points, [&](const Segment2& edge) {
+        const Vec2 a = edge.a - origin, b = edge.b - origin;
+        const double turn = cross(a, b);
+        first = first + turn * (a + b);
+        xx += turn * (a.x * a.x + a.x * b.x + b.x * b.x);
+        yy += turn * (a.y * a.y + a.y * b.y + b.y * b.y);
+        xy += turn * (a.x * b.y + 2 * a.x * a.y + 2 * b.x * b.y + b.x * a.y);
+    });
+    const Vec2 middle = 1 / (6 * area) * first;
+    const double mxx = xx / (12 * area) - middle.x * middle.x;
+    const double myy = yy / (12 * area) - middle.y * middle.y;
+    const double mxy = xy / (24 * area) - middle.x * middle.y;
+    const double mean = (mxx + myy) / 2, apart = std::hypot((mxx - myy) / 2, mxy);
+    if (!(mean > apart)) return std::nullopt;
+    const double ratio = std::sqrt((mean + apart) / (mean - apart));
+    const Vec2 along = unitVector(Angle::radians(std::atan2(2 * mxy, mxx - myy) / 2));
+    // Of the polygon's area, as the outlines of ellipses have it.
+    const double half_width = std::sqrt(std::abs(area) / (std::numbers::pi * ratio));
+    const double half_length = ratio * half_width;
+    double least = HUGE_VAL, most = 0;
+    for (const Point2 p : points) {
+        const Vec2 out = p - (origin + middle);
+        const double off =
+            std::hypot(dot(out, along) / half_length, cross(along, out) / half_width);
+        least = std::min(least, off);
+        most = std::max(most, off);
+    }
+    if (least < 1 - 4 * kEven || most > 1 + 4 * kEven || most - least > kEven) return std::nullopt;
+    const Point2 center = origin + middle;
+    const bool is_circle = ratio < 1 + 1e-6;
+    const double bottom = pose.translation().z();
+    return WorldBlock{
+        floorOf(pose * Eigen::Vector3d(center.x, center.y, 0)),
+        is_circle ? Angle() : headingOf(pose.linear() * Eigen::Vector3d(along.x, along.y, 0)),
+        2 * half_length,
+        2 * half_width,
+        bottom,
+        bottom + polyline.height,
+        true,
+        shape.model,
+        {},
+        false,
+        shape.line};
 }
 
 bool isWall(const WorldBlock& block, std::optional<double> cut) {
