@@ -125,6 +125,23 @@ TEST(SdfImport, EllipticPolylinesAreCylinders) {
     EXPECT_TRUE(record("1 2 0 0 0 0", dented).starts_with("fence id=a "));
 }
 
+/// A room of 8 m x 6 m about the origin.
+std::string roomAbout() {
+    return boxModel("n", "0 3 1 0 0 0", "8 0.2 2") + boxModel("s", "0 -3 1 0 0 0", "8 0.2 2") +
+           boxModel("e", "4 0 1 0 0 0", "0.2 6 2") + boxModel("v", "-4 0 1 0 0 0", "0.2 6 2");
+}
+
+TEST(SdfImport, SlabsUnderARoomAreItsFloor) {
+    const auto cubes = [](const std::string& model) {
+        return countOf(readSdf(worldOf(roomAbout() + model), "test.sdf", {}, sceneSchemas()),
+                       "cube");
+    };
+    EXPECT_EQ(cubes(boxModel("floor", "0 0 0 0 0 0", "8 6 0.1")), 0U);
+    EXPECT_EQ(cubes(boxModel("floor", "0 0 0.1 0 0 0", "20 20 0.2")), 0U);
+    EXPECT_EQ(cubes(boxModel("stage", "0 0 0.25 0 0 0", "8 6 0.5")), 1U);
+    EXPECT_EQ(cubes(boxModel("plinth", "0 0 0.05 0 0 0", "2 2 0.1")), 1U);
+}
+
 TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {
     // Nested twice, each turned by a quarter: 1 m ahead of what looks along -x.
     EXPECT_EQ(recordsOf(worldOf("<model name='a'><pose>5 5 0 0 0 1.57079632679</pose>"

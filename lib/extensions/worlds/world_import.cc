@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -22,6 +23,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "geom/arrangement.h"
 #include "io/exporters.h"
 #include "io/import_records.h"
 #include "io/importers.h"
@@ -66,6 +68,8 @@ class WorldImporter {
         for (const WorldBlock& block : blocks_)
             if (isOutside(block))
                 ++blocks_outside_;
+            else if (isFloor(block))
+                ++slabs_;
             else
                 addBlock(block);
         note();
@@ -384,6 +388,22 @@ class WorldImporter {
         return true;
     }
 
+    /// Returns true for a low slab on which most of a room stands.
+    [[nodiscard]] bool isFloor(const WorldBlock& block) const {
+        constexpr double kSlabTop = 0.2;  // metres
+        constexpr double kMost = 0.5;     // of a room
+        if (block.top > kSlabTop || block.bottom > kFloorTop) return false;
+        const Polygon slab = rectangle(block.center, block.length, block.width, block.heading);
+        return std::ranges::any_of(regions_, [&slab](const PlanRegion& region) {
+            const auto off = [&slab](double sum, const Region& room) {
+                return sum + totalArea(difference(room, {{slab}}));
+            };
+            if (std::abs(signedArea(slab)) < kMost * region.area()) return false;
+            return std::accumulate(region.rooms.begin(), region.rooms.end(), 0.0, off) <
+                   (1 - kMost) * region.area();
+        });
+    }
+
     struct Fence {
         PlanPath path;
         double top = 0;
@@ -488,15 +508,16 @@ class WorldImporter {
         warnOfUnread(world_.unread, regions_,
                      "if it is a wall, make it an upright box, or a mesh without scale and turn",
                      out_);
-        if (floors_ > 0) out_.note(countText(floors_, "slab") + " of floor left out");
+        if (floors_ + slabs_ > 0)
+            out_.note(countText(floors_ + slabs_, "slab") + " of floor left out");
         if (outside_ + blocks_outside_ > 0)
             out_.note("left out outside of the room: " + countText(outside_, "wall") + " and " +
                       countText(blocks_outside_, "thing"));
         out_.note("walls: " + std::to_string(walls_.size() - outside_) +
                   ", doors: " + std::to_string(doors_) +
                   (windows_ > 0 ? ", windows: " + std::to_string(windows_) : "") +
-                  ", fences: " + std::to_string(fences_.size()) +
-                  ", cubes and cylinders: " + std::to_string(blocks_.size() - blocks_outside_) +
+                  ", fences: " + std::to_string(fences_.size()) + ", cubes and cylinders: " +
+                  std::to_string(blocks_.size() - blocks_outside_ - slabs_) +
                   ", meshes: " + std::to_string(meshes_));
     }
 
@@ -517,8 +538,8 @@ class WorldImporter {
     MeshFiles& files_;
     std::map<std::string, std::optional<std::shared_ptr<const TriangleMesh>>> loaded_;  // by file
     std::vector<PlanRegion> regions_;  // that are kept
-    std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, blocks_outside_ = 0, doors_ = 0,
-                windows_ = 0;
+    std::size_t meshes_ = 0, floors_ = 0, outside_ = 0, doors_ = 0, windows_ = 0;
+    std::size_t blocks_outside_ = 0, slabs_ = 0;  // of blocks_
 };
 
 }  // namespace

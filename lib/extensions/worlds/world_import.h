@@ -107,10 +107,10 @@ std::vector<WorldMeshCut> wallsAmong(
 /// - Meshes become `mesh` records if their files are there, and are else left out with a warning.
 /// Where boxes and polylines enclose no room, or with ImportOptions::slice_walls, those that bound
 /// one are cut into walls, see wallsAmong().
-/// - Slabs of floor, tilted shapes and all others are skipped, with a note; so is what
-/// WorldShapes::left_out counts.
-/// \param name the world's file \param work of the world
-/// \throws FormatError if no shape is left, or the walls take too much work
+/// - Slabs of floor, among them low boxes that most of a room stands on, tilted shapes and all
+/// others are skipped, with a note; so is what WorldShapes::left_out counts. \param name the
+/// world's file \param work of the world \throws FormatError if no shape is left, or the walls take
+/// too much work
 void writeWorldRoom(WorldShapes world, const std::string& name, const ImportOptions& options,
                     const Schemas& schemas, Budget& work, ImportRecords& out);
 
