@@ -3,6 +3,9 @@
 // Collisions count, since they stop robots; visuals only of links without collisions.
 #include "extensions/gazebo/gazebo.h"
 
+#include <cmath>
+#include <map>
+#include <optional>
 #include <pugixml.hpp>
 #include <utility>
 
@@ -24,6 +27,19 @@ constexpr int kMaxDepth = 64;  // models in models
 /// Units of Budget for a shape, which may become a wall, and for a point of a polyline.
 constexpr std::size_t kShapeWork = 80, kPointWork = 10;
 
+/// Turns a pose that physics has tilted a little, as by gravity on a floor, back upright.
+Transform levelled(Transform pose) {
+    constexpr double kSettled = 2e-3;  // sine of the angle
+    for (int i = 0; i < 3; ++i) {
+        const Eigen::Vector3d axis = pose.linear().col(i);
+        if (std::hypot(axis.x(), axis.y()) > kSettled) continue;
+        const Eigen::Vector3d upright(0, 0, std::copysign(1.0, axis.z()));
+        pose.linear() = Eigen::Quaterniond::FromTwoVectors(axis, upright) * pose.linear();
+        break;
+    }
+    return pose;
+}
+
 class SdfReader {
   public:
     SdfReader(std::string_view bytes, const std::string& name,
@@ -36,6 +52,7 @@ class SdfReader {
         if (world.next_sibling("world"))
             files_.fail(world.next_sibling("world"), "a second world in one file, wanted one");
         if (!world && !root.child("model")) files_.fail(root, "no `world` and no `model` in it");
+        findStates(world);
         addModels(frames_.scopeOf(world ? world : root), Transform::Identity(), {});
         found_.sources = files_.sources();
         found_.missing = files_.missing();
@@ -49,6 +66,29 @@ class SdfReader {
         int line = 0;            // of the outermost include; 0: not included
         int depth = 0;
     };
+
+    /// The poses in the world of a model and its links, as a running simulation saved them.
+    struct State {
+        std::optional<Transform> pose = {};
+        std::map<std::string_view, Transform> links = {};
+    };
+
+    /// Reads the state of the world, which Gazebo applies after it has built the models.
+    void findStates(pugi::xml_node world) {
+        for (const pugi::xml_node model : world.child("state").children("model")) {
+            State& state = states_[model.attribute("name").value()];
+            if (model.child("pose")) state.pose = levelled(frames_.poseIn(model));
+            for (const pugi::xml_node link : model.children("link"))
+                if (link.child("pose"))
+                    state.links[link.attribute("name").value()] = levelled(frames_.poseIn(link));
+        }
+    }
+
+    /// Returns the state of a model of the world; null for others.
+    [[nodiscard]] const State* stateOf(std::string_view model, const Around& around) const {
+        const auto found = around.depth == 0 ? states_.find(model) : states_.end();
+        return found == states_.end() ? nullptr : &found->second;
+    }
 
     void addModels(const SdfScope& scope, const Transform& world_from_scope, const Around& around) {
         if (around.depth > kMaxDepth)
@@ -72,19 +112,26 @@ class SdfReader {
             includes_.push_back(node);
         }
         const SdfScope& inner = frames_.scopeOf(node);
-        const Transform frame = world_from_scope * frames_.frameOf(node, scope);
+        const State* const state = stateOf(frames_.nameOf(node), around);
+        const Transform frame = state != nullptr && state->pose
+                                    ? *state->pose
+                                    : world_from_scope * frames_.frameOf(node, scope);
         if (around.model.empty()) around.model = frames_.nameOf(node);
         if (is_include && around.line == 0) around.line = files_.lineOf(node);
         ++around.depth;
         for (const pugi::xml_node link : inner.node.children("link"))
-            addLink(link, frame, inner, around);
+            addLink(link, frame, inner, around, state);
         addModels(inner, frame, around);
         if (is_include) includes_.pop_back();
     }
 
     void addLink(pugi::xml_node link, const Transform& world_from_model, const SdfScope& model,
-                 const Around& around) {
-        const Transform& frame = frames_.frameOf(link, model);
+                 const Around& around, const State* state) {
+        Transform frame = frames_.frameOf(link, model);
+        if (state != nullptr)
+            if (const auto moved = state->links.find(frames_.nameOf(link));
+                moved != state->links.end())
+                frame = world_from_model.inverse() * moved->second;
         const char* kind = link.child("collision") ? "collision" : "visual";
         for (const pugi::xml_node node : link.children(kind)) {
             // Some sensors do not see it: it is a mark, or the body of a sensor.
@@ -177,7 +224,8 @@ class SdfReader {
 
     SdfFiles files_;
     SdfFrames frames_{files_};
-    std::vector<pugi::xml_node> includes_;  // that led to the model being read
+    std::vector<pugi::xml_node> includes_;      // that led to the model being read
+    std::map<std::string_view, State> states_;  // of the world's models, by name
     worlds::WorldShapes found_;
 };
 

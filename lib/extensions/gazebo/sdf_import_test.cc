@@ -142,6 +142,20 @@ TEST(SdfImport, SlabsUnderARoomAreItsFloor) {
     EXPECT_EQ(cubes(boxModel("plinth", "0 0 0.05 0 0 0", "2 2 0.1")), 1U);
 }
 
+TEST(SdfImport, ModelsStandWhereTheStateOfTheWorldPutsThem) {
+    const std::string model = boxModel("m", "0 0 0.5 0 0 0", "1 0.9 1");
+    const auto state = [](const std::string& poses) {
+        return "<state world_name='w'><model name='m'>" + poses + "</model></state>";
+    };
+    EXPECT_EQ(recordsOf(worldOf(model + state("<pose>2 2 0.5 1e-4 0 1.5708</pose>"))),
+              "cube id=m at=2,2 heading=90 size=1,0.9,1\n");
+    EXPECT_EQ(recordsOf(worldOf(model + state("<pose>2 2 0.5 0 0 0</pose><link name='l'>"
+                                              "<pose>3 1 0.5 0 0 0</pose></link>"))),
+              "cube id=m at=3,1 size=1,0.9,1\n");
+    EXPECT_EQ(recordsOf(worldOf(model + "<state world_name='w'><model name='n'/></state>")),
+              "cube id=m size=1,0.9,1\n");
+}
+
 TEST(SdfImport, BoxesStandWhereAllPosesTogetherPutThem) {
     // Nested twice, each turned by a quarter: 1 m ahead of what looks along -x.
     EXPECT_EQ(recordsOf(worldOf("<model name='a'><pose>5 5 0 0 0 1.57079632679</pose>"
