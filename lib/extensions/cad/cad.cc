@@ -13,12 +13,19 @@ bool isHouseExpo(const ImportSource& source) {
            fileSuffix(source.operand) != ".gltf";
 }
 
+bool isGallery(const ImportSource& source) {
+    return isGalleryFile(source.bytes, fileSuffix(source.operand) == ".pol");
+}
+
 }  // namespace
 
 std::span<const Importer> cadImporters() {
     static constexpr Importer kRows[] = {
         importer<isDxf, readDxf>("DXF"),
-        importer<isGalleryFile, readGalleryFile>("an art gallery", false),
+        {"an art gallery", false, isGallery,
+         [](const ImportSource& source) {
+             return readGalleryFile(source.bytes, source.operand, source.options, source.schemas);
+         }},
         importer<isSvg, readSvg>("SVG"),
         {"HouseExpo JSON", true, isHouseExpo,
          [](const ImportSource& source) {

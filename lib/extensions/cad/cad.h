@@ -76,7 +76,8 @@ Document readHouseExpo(std::string_view json, const std::string& name, const Imp
                        const Schemas& schemas);
 
 /// Returns true for an instance of the art gallery problem: a number of corners and a fraction p/q.
-bool isGalleryFile(std::string_view bytes);
+/// \param is_named its file has the suffix .pol, so that a number may replace the fraction
+bool isGalleryFile(std::string_view bytes, bool is_named = false);
 
 /// Reads an instance of the art gallery problem (`.pol` of AGPLIB): the number of corners of a
 /// simple polygon and their x and y, each a number or a fraction p/q, in metres; then, if it has

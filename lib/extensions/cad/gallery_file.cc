@@ -150,11 +150,11 @@ Point2 insideOf(const Region& region, const std::string& name) {
 
 }  // namespace
 
-bool isGalleryFile(std::string_view bytes) {
+bool isGalleryFile(std::string_view bytes, bool is_named) {
     GalleryWords words(bytes.substr(0, 4096));
     const auto corners = parseInteger(words.next());
     const std::string_view first = words.next();
-    return corners && *corners >= 3 && first.find('/') != std::string_view::npos &&
+    return corners && *corners >= 3 && (is_named || first.find('/') != std::string_view::npos) &&
            fractionOf(first).has_value();
 }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "extensions/cad/cad.h"
+#include "io/importers.h"
 #include "support/test_import.h"
 
 namespace ispace::cad {
@@ -36,6 +39,21 @@ TEST(GalleryFile, RecognisedByItsFraction) {
     EXPECT_TRUE(isGalleryFile("\n 3\r\n0/1"));
     for (const char* text : {"", "60", "2 0/1", "3 1.5", "3 a/b", "x 1/2", "3 1/0", "3: 1/2"})
         EXPECT_FALSE(isGalleryFile(text)) << text;
+}
+
+TEST(GalleryFile, PlainNumbersAreRecognisedByTheSuffix) {
+    const std::string text = "4 0 0 8 0 8 6 0 6 0\n";
+    EXPECT_NEAR(environmentOf(read(text)).indoor().area(), 48, 1e-9);
+    const auto is_recognised = [&text](const std::string& name) {
+        return std::ranges::any_of(cadImporters(), [&](const Importer& row) {
+            return row.recognises({text, name, {}, sceneSchemas()});
+        });
+    };
+    EXPECT_TRUE(is_recognised("p.pol"));
+    EXPECT_FALSE(is_recognised("p.txt"));
+    EXPECT_TRUE(isGalleryFile(text, true));
+    EXPECT_FALSE(isGalleryFile(text));  // points as text begin so, too
+    EXPECT_FALSE(isGalleryFile("id: 3", true));
 }
 
 TEST(GalleryFile, Refuses) {
