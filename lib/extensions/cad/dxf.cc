@@ -535,10 +535,13 @@ class DxfImporter {
                 own.inside = drawnInside(drawing_, frame);
             shapes.sizes.emplace();
             for (const auto& [line, size] : drawing_.sizes)
-                (*shapes.sizes)[line] = {metres * size.width, metres * size.bottom,
-                                         metres * size.height, metres * size.depth};
+                (*shapes.sizes)[line] = {metres * size.width,  metres * size.bottom,
+                                         metres * size.height, metres * size.depth,
+                                         size.glass,           size.is_open,
+                                         size.is_blind};
         }
         const std::optional<std::map<int, DrawnSize>> sizes = shapes.sizes;
+        if (sizes) addRaisedWalls(shapes.walls, *sizes, out);
         std::vector<Segment2> lines;
         if (!expander.wideFills().empty()) lines = pathPieces(shapes.walls);
         const PlanOutcome outcome =

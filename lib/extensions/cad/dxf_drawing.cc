@@ -701,6 +701,8 @@ class DxfReader {
             entity_.line_type = group.value;
         } else if (code == 1001) {
             entity_.application = group.value;
+        } else if (code == 1000) {
+            if (is_path && entity_.application == kDxfApplication) addPane(group.value);
         } else if ((is_sequence && code != 71 && code >= 10 && code < 100 &&
                     !contains(kCommon, code)) ||
                    (is_spline && (code == 11 || code == 21))) {
@@ -738,6 +740,15 @@ class DxfReader {
         if (group.code == (is_path ? 38 : 30)) size.bottom = entity_.elevation = *value;
         if (group.code == 43) size.width = entity_.width = *value;
         if (group.code == 1041 && entity_.application == kDxfApplication) size.depth = *value;
+    }
+
+    /// Reads a text of writeDxf() about the pane of a window; others are left.
+    void addPane(std::string_view text) {
+        DrawnSize& size = drawing_.sizes[entity_.line];
+        for (const char* const glass : {"opaque", "none"})
+            if (text == kDxfGlass + std::string(glass)) size.glass = glass;
+        if (text == kDxfOpen) size.is_open = true;
+        if (text == kDxfBlind) size.is_blind = true;
     }
 
     /// \param single for a VERTEX, which is one

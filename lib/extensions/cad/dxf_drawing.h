@@ -107,6 +107,10 @@ std::vector<Point2> drawnInside(const DxfDrawing& drawing, const Affine& frame);
 void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& sizes,
                     const Affine& frame, ImportRecords& out);
 
+/// Moves straight walls off the floor, which bound no room, from `walls` to records.
+void addRaisedWalls(std::vector<PlanPath>& walls, const std::map<int, DrawnSize>& sizes,
+                    ImportRecords& out);
+
 /// Reads ASCII DXF. Ignores counts in the file, and parses only the numbers it needs.
 /// \throws FormatError with its line: no group code, a malformed number, a missing coordinate, an
 /// end before `EOF`

@@ -33,16 +33,23 @@ constexpr double kLeaf = 0.04;
 
 /// The last point of a closed chain repeats the first.
 void addChain(DxfWriter& out, const char* layer, std::vector<Point2> chain, double width,
-              DxfExtrusion upright, double depth = 0) {
+              DxfExtrusion upright, const DxfOpening& opening = {}) {
     const bool closed = chain.size() > 2 && chain.front() == chain.back();
     if (closed) chain.pop_back();
-    out.path(layer, chain, closed, width, upright, depth);
+    out.path(layer, chain, closed, width, upright, opening);
 }
 
-/// Returns the depth of an opening that states one, else 0.
-double depthOf(const Record& opening) {
-    const Tuple& size = opening.tuple("size");
-    return size.size() > 1 ? size[1] : 0;
+/// Returns the depth of an opening that states one, and what differs from clear glass.
+DxfOpening openingOf(const Record& record) {
+    DxfOpening opening;
+    const Tuple& size = record.tuple("size");
+    if (size.size() > 1) opening.depth = size[1];
+    if (record.keyword() != "window") return opening;
+    if (const std::string& glass = record.text("glass"); glass != "clear")
+        opening.pane.push_back(kDxfGlass + glass);
+    if (record.flag("open")) opening.pane.emplace_back(kDxfOpen);
+    if (record.flag("blind")) opening.pane.emplace_back(kDxfBlind);
+    return opening;
 }
 
 /// Writes the outline of each prism and mesh, including hidden ones.
@@ -170,12 +177,12 @@ void addRoomToDxf(DxfWriter& out, const Environment& environment) {
         const bool is_door = keyword == "door", is_window = keyword == "window";
         const bool is_shut = is_door && !elements[i].record.flag("open");
         for (const std::vector<Point2>& chain : lines[i].chains) {
+            const DxfExtrusion upright{lines[i].bottom, lines[i].top - lines[i].bottom};
             if (is_door || is_window)
-                addChain(out, is_door ? "doors" : "windows", chain, is_shut ? kLeaf : 0,
-                         {lines[i].bottom, lines[i].top - lines[i].bottom},
-                         depthOf(elements[i].record));
+                addChain(out, is_door ? "doors" : "windows", chain, is_shut ? kLeaf : 0, upright,
+                         openingOf(elements[i].record));
             else
-                addChain(out, "walls", chain, lines[i].thickness, {0, topOf(elements[i].body)});
+                addChain(out, "walls", chain, lines[i].thickness, upright);
         }
         if (keyword == "inside") {
             const Tuple& at = elements[i].record.tuple("at");

@@ -174,4 +174,22 @@ void addDrawnThings(const DxfDrawing& drawing, const std::map<int, DrawnSize>& s
         out.note(countText(boxed, "solid") + " of another shape became the box around it");
 }
 
+void addRaisedWalls(std::vector<PlanPath>& walls, const std::map<int, DrawnSize>& sizes,
+                    ImportRecords& out) {
+    std::erase_if(walls, [&](const PlanPath& wall) {
+        const auto found = sizes.find(wall.line);
+        if (found == sizes.end() || wall.pieceCount() != 1) return false;
+        const DrawnSize& size = found->second;
+        const auto [a, b] = wall.piece(0);
+        if (!(size.bottom > 0) || !(size.height > 0) || a == b) return false;
+        const Point2 middle = a + 0.5 * (b - a);
+        Record& record = out.add("wall", wall.line);
+        record.set("at", lengths({middle.x, middle.y, size.bottom}));
+        record.set("heading",
+                   wholeMicrometres(Angle::radians(std::atan2(b.y - a.y, b.x - a.x)).degrees()));
+        record.set("size", lengths({distance(a, b), size.width, size.height}));
+        return true;
+    });
+}
+
 }  // namespace ispace::cad

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drawings that writeDxf() made, read back.
 #include "extensions/cad/cad.h"
+#include "extensions/cad/dxf_plan.h"
 #include "support/test_dxf.h"
 #include "support/test_import.h"
+#include "support/test_scenes.h"
 
 namespace ispace::cad {
 namespace {
@@ -91,6 +93,31 @@ TEST(DxfRoom, DepthsOfOpenings) {
     for (const double unsound : {-700., 1e-4, 1e12})
         EXPECT_EQ(doorWith(group(1041, unsound)), plain);
     EXPECT_NE(doorWith(group(1041, 1e9)), plain);  // as deep as `size` allows
+}
+
+std::string again(const std::string& records) {
+    return writeRecordText(
+        readDxf(writeDxf(sceneOf(records), std::nullopt), "room.dxf", {}, sceneSchemas()));
+}
+
+TEST(DxfRoom, WallsOffTheFloorStayThere) {
+    const std::string records = again("ispace size=8,6\nwall at=0,0,1 size=3,0.2,1\n");
+    EXPECT_NE(records.find("wall at=0,0,1 size=3,0.2,1\n"), std::string::npos) << records;
+}
+
+TEST(DxfRoom, PanesKeepTheirGlass) {
+    const std::string room = "ispace id=r size=8,6\nwall id=m from=0,-3 to=0,3\n";
+    const std::string window = "window wall=m offset=3 size=2 ";
+    const auto pane = [&](const std::string& keys) {
+        const std::string records = again(room + window + keys + "\n");
+        const std::size_t at = records.find("window");
+        return records.substr(at, records.find('\n', at) - at);
+    };
+    const std::string clear = pane("");
+    EXPECT_EQ(clear.find("glass"), std::string::npos) << clear;
+    for (const char* keys : {"glass=opaque", "glass=none", "open=yes", "blind=yes"})
+        EXPECT_NE((pane(keys) + ' ').find(' ' + std::string(keys) + ' '), std::string::npos)
+            << pane(keys);
 }
 
 }  // namespace

@@ -138,16 +138,17 @@ void DxfWriter::line(const std::string& layer, const Segment2& segment) {
 }
 
 void DxfWriter::path(const std::string& layer, const std::vector<Point2>& points, bool closed,
-                     double width, DxfExtrusion upright, double depth) {
+                     double width, DxfExtrusion upright, const DxfOpening& opening) {
     parts_->beginPolyline(layer, points.size(), closed);
     if (width > 0) parts_->out.dxfReal(43, width);
     if (upright.bottom != 0) parts_->out.dxfReal(38, upright.bottom);
     if (upright.height != 0) parts_->out.dxfReal(39, upright.height);
     for (const Point2 p : points) parts_->dxf.writeVertex(parts_->out, DL_VertexData(p.x, p.y));
     parts_->dxf.writePolylineEnd(parts_->out);
-    if (depth == 0) return;
+    if (opening.depth == 0 && opening.pane.empty()) return;
     parts_->out.dxfString(1001, kDxfApplication);
-    parts_->out.dxfReal(1041, depth);
+    for (const std::string& text : opening.pane) parts_->out.dxfString(1000, text);
+    if (opening.depth != 0) parts_->out.dxfReal(1041, opening.depth);
 }
 
 void DxfWriter::curve(const std::string& layer, const Curve& curve) {

@@ -25,8 +25,16 @@ struct DxfExtrusion {
 };
 
 /// Name under which extended data of entities is ours: a distance, the depth of an opening through
-/// its wall in units of the drawing.
+/// its wall in units of the drawing, and texts about the pane of a window.
 constexpr const char* kDxfApplication = "ISPACE";
+constexpr const char kDxfGlass[] = "glass=";  ///< before a choice of the key
+constexpr const char kDxfOpen[] = "open=yes", kDxfBlind[] = "blind=yes";
+
+/// Extended data of an opening.
+struct DxfOpening {
+    double depth = 0;                    ///< through its wall; 0: none
+    std::vector<std::string> pane = {};  ///< texts about it
+};
 
 /// Writes a drawing in ASCII DXF (AutoCAD 2000) through dxflib: metres ($INSUNITS 6), coordinates
 /// in shortest form. Entities refer to their layer by name. Equal calls give equal bytes.
@@ -39,9 +47,8 @@ class DxfWriter {
 
     void line(const std::string& layer, const Segment2& segment);
     /// Writes a polyline, `width` metres wide; a closed one does not repeat its first point.
-    /// \param depth of an opening, as extended data; 0: none
     void path(const std::string& layer, const std::vector<Point2>& points, bool closed,
-              double width = 0, DxfExtrusion upright = {}, double depth = 0);
+              double width = 0, DxfExtrusion upright = {}, const DxfOpening& opening = {});
     /// Writes a closed polyline with true arcs.
     void curve(const std::string& layer, const Curve& curve);
     void circle(const std::string& layer, Point2 center, double radius, DxfExtrusion upright = {});

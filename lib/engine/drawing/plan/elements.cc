@@ -62,6 +62,8 @@ std::vector<ElementLines> elementLinesOf(const Environment& environment) {
         for (const WallLine& wall : wallLinesOf(elements[i].record, findings)) {
             segments.push_back(wall.line);
             result[i].thickness = wall.thickness;
+            result[i].bottom = wall.bottom;
+            result[i].top = wall.top;
             plan.add(wall, i);
         }
         result[i].chains = chained(segments);

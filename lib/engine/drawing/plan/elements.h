@@ -46,7 +46,7 @@ Color displayColor(Material material);
 struct ElementLines {
     std::vector<std::vector<Point2>> chains;  ///< closed ones repeat the first point
     double thickness = 0;                     ///< of the wall that it is or lies in, in metres
-    double bottom = 0, top = 0;               ///< of a door or window
+    double bottom = 0, top = 0;
 };
 
 /// Computes the lines of each element. O(n log n).

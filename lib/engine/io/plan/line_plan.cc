@@ -284,10 +284,14 @@ class LinePlan {
             if (depth > 0 && depth <= record.schema().find("size")->upper)
                 record.set("size", Tuple{wholeMicrometres(distance(opening.line.a, opening.line.b)),
                                          depth});
-            if (opening.is_window)
+            if (opening.is_window) {
                 record.set("sill", size->bottom);
-            else
+                if (!size->glass.empty()) record.set("glass", size->glass);
+                if (size->is_open) record.set("open", true);
+                if (size->is_blind) record.set("blind", true);
+            } else {
                 record.set("open", !isShut(opening));
+            }
         } else if (opening.is_window) {
             const double sill = std::min(kSill, wall_height * kSill / kDoorHeight);
             record.set("height", std::min(kWindowHeight, wall_height - sill));

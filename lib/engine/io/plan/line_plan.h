@@ -66,11 +66,13 @@ struct PlanOpenings {
     std::vector<Segment2> lost_in;  ///< diagonals of the boxes around these
 };
 
-/// Measures of a line in a drawing besides its course, in metres.
+/// Measures of a line in a drawing besides its course, in metres, and the pane of a window.
 struct DrawnSize {
-    double width = 0;               ///< of the line as drawn
-    double bottom = 0, height = 0;  ///< elevation and thickness
-    double depth = 0;               ///< of an opening through its wall; 0: as the wall
+    double width = 0;                        ///< of the line as drawn
+    double bottom = 0, height = 0;           ///< elevation and thickness
+    double depth = 0;                        ///< of an opening through its wall; 0: as the wall
+    std::string glass = {};                  ///< of a window, as its record has it; "": clear
+    bool is_open = false, is_blind = false;  ///< of a window
 };
 
 /// Sizes by lines of the file.
@@ -96,8 +98,6 @@ PlanOpenings findOpenings(std::span<const PlanShape> doors, std::span<const Plan
                           const DrawnSizes* sizes = nullptr,
                           std::span<const double> thickness = {});
 
-/// Doors that a drawing shows among its walls.
-struct DrawnDoors {
 /// Returns lines across walls of two lines at the ends of doors, where the lines run on behind the
 /// symbol, and adds the openings of these doors that the other line lacks. So the space between the
 /// lines of a wall is no floor but in the doorway.
@@ -105,6 +105,8 @@ struct DrawnDoors {
 std::vector<PlanPath> addJambs(std::vector<PlanOpening>& openings, std::span<const Segment2> walls,
                                std::span<const double> thickness, Budget& work);
 
+/// Doors that a drawing shows among its walls.
+struct DrawnDoors {
     std::vector<PlanShape> swings;  ///< one for each leaf
     std::vector<PlanPath> walls;    ///< without leaves and swings
 };
