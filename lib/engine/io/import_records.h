@@ -127,14 +127,15 @@ struct LengthUnit {
     double metres;
     int insunits;  ///< its code in DXF, $INSUNITS
 };
-constexpr std::array<LengthUnit, 8> kLengthUnits{{{"m", 1, 6},
+constexpr std::array<LengthUnit, 9> kLengthUnits{{{"m", 1, 6},
                                                   {"cm", 0.01, 5},
                                                   {"mm", 0.001, 4},
                                                   {"inch", 0.0254, 1},
                                                   {"foot", 0.3048, 2},
                                                   {"km", 1000, 7},
                                                   {"yard", 0.9144, 10},
-                                                  {"dm", 0.1, 14}}};
+                                                  {"dm", 0.1, 14},
+                                                  {"US survey foot", 1200.0 / 3937, 21}}};
 
 /// Returns the name of the first element of XML, without its namespace, if it begins in the first
 /// 64 KiB; "" for other bytes.

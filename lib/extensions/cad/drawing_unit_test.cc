@@ -138,8 +138,10 @@ TEST(DrawingUnit, AWrongUnitHasOneAdvice) {
 TEST(DrawingUnit, ListsTheCodesThatAreRead) {
     EXPECT_NE(errorsOf([&] { read(drawing(rectangle("0", 0, 0, 8, 6), "", 3)); })
                   .find("$INSUNITS is 3, wanted 1 (inch), 2 (foot), 4 (mm), 5 (cm), 6 (m), 7 (km), "
-                        "10 (yard) or 14 (dm)"),
+                        "10 (yard), 14 (dm) or 21 (US survey foot)"),
               std::string::npos);
+    constexpr double kFeet = 3937.0 / 1200;
+    EXPECT_NEAR(areaOf(drawing(rectangle("0", 0, 0, 8 * kFeet, 6 * kFeet), "", 21)), 48, 1e-4);
 }
 
 TEST(DrawingUnit, ScalesOfPaper) {
