@@ -61,9 +61,11 @@ struct Heights {
 Document meshDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas) {
     if (operand == "-")
-        throw FormatError(Diagnostic{displayName(operand), 0, 0,
-                                     "a mesh on standard input: name its file instead, so that "
-                                     "records can refer to it"});
+        throw FormatError(
+            Diagnostic{displayName(operand), 0, 0,
+                       std::string("a mesh on standard input: name its file instead") +
+                           (options.slice_walls ? ", as meshes are read from files alone"
+                                                : ", so that records can refer to it")});
     ImportRecords out(schemas, operand, options);
     Record& record = out.add("mesh", 0);
     const std::filesystem::path path(operand);

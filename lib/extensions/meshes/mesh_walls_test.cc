@@ -111,6 +111,12 @@ TEST(MeshWalls, UnitsAndHeights) {
                   "--slice-walls, --units and --up right?\n");
 }
 
+TEST(MeshWalls, StandardInputIsRefused) {
+    EXPECT_EQ(errorsOf([] { readMeshWalls("-", cutAt(1), sceneSchemas()); }),
+              "stdin: error: a mesh on standard input: name its file instead, as meshes are read "
+              "from files alone\n");
+}
+
 TEST(MeshWalls, ACutThatEnclosesNoRoomWarns) {
     const testing::TestFolder folder;
     // Three walls of 0.4 m and an open side, wider than a doorway: only the walls are hollow.

@@ -314,9 +314,11 @@ void addInfra(std::vector<Schema>& out) {
 }
 
 Schema meshSchema() {
+    KeySpec at = atKey();
+    at.help = "origin of the file x,y and height z of the file's height 0";
     return keys::schemaOf(
         "mesh", RecordType::Other, "a body from a file: OBJ, STL, PLY, COLLADA, glTF, GLB or IFC",
-        {atKey(),
+        {std::move(at),
          keys::heading(),
          {.name = "file",
           .type = KeyType::Text,
