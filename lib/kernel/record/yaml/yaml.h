@@ -303,6 +303,8 @@ class YamlItemReader {
     void readDefaults(const YamlNode& value, LineColumn at);
 
   private:
+    /// Returns null, with a finding, for an unknown key, and for the merge key of YAML.
+    const KeySpec* keyCalled(const YamlNode& name);
     /// \return false if the key or its value is invalid
     bool readKey(const YamlNode& name, const YamlNode& value, LineColumn at);
     void addDefaults(const Schema& schema);

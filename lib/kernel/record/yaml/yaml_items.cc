@@ -275,8 +275,18 @@ std::optional<YamlItem> YamlItemReader::read(const Schema& schema, LineColumn at
     return item;
 }
 
+const KeySpec* YamlItemReader::keyCalled(const YamlNode& name) {
+    if (name.scalar != "<<") return collector_->key(name.scalar, spotOf(name));
+    collector_->finding(spotOf(name), [] {
+        return std::string(
+            "merge keys (<<) are not read, anchors and aliases are: write the keys "
+            "themselves, or `defaults` for all records of a keyword");
+    });
+    return nullptr;
+}
+
 bool YamlItemReader::readKey(const YamlNode& name, const YamlNode& value, LineColumn at) {
-    const KeySpec* const key = collector_->key(name.scalar, spotOf(name));
+    const KeySpec* const key = keyCalled(name);
     if (key == nullptr) return false;
     auto read = values_->read(*key, value, at);
     if (!read) return false;
@@ -346,7 +356,7 @@ void YamlItemReader::readDefaults(const YamlNode& value, LineColumn at) {
 void YamlItemReader::readDefaultKeys(const Schema& schema, const YamlNode& keys) {
     values_->forEachPair(keys, "a key",
                          [&](const YamlNode& name, const YamlNode& value, LineColumn at) {
-                             const KeySpec* const key = collector_->key(name.scalar, spotOf(name));
+                             const KeySpec* const key = keyCalled(name);
                              if (key == nullptr) return;
                              if (key == schema.keys.data())
                                  return collector_->finding(spotOf(name), [] {

@@ -123,6 +123,12 @@ TEST(ReadYaml, PointsAtTheValue) {
         << "columns count bytes";
 }
 
+TEST(ReadYaml, MergeKeysAreNamed) {
+    EXPECT_EQ(findings("- desk: &d {height: 0.7}\n- desk: {<<: *d, at: [1, 2]}\n"),
+              Texts{"a.yaml:2:10: error: merge keys (<<) are not read, anchors and aliases are: "
+                    "write the keys themselves, or `defaults` for all records of a keyword"});
+}
+
 TEST(ReadYaml, WantsValuesOfTheRightForm) {
     const std::string null = ": nothing (null) is given, ";
     EXPECT_EQ(
