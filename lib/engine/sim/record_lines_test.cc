@@ -95,6 +95,48 @@ TEST_F(RecordLines, PeopleHaveATable) {
               std::count(kPeopleHead.begin(), kPeopleHead.end(), ','));
 }
 
+/// A change in the step of a frame does not make it due again, nor bumpers felt anew.
+TEST_F(RecordLines, AFrameIsRecordedOnceAlsoIfTheWorldChanges) {
+    const Scene scene =
+        room("camera id=c9 at=0,1,1 pixels=8,6 rate=1\nrobot id=p model=pioneer-2dx at=1,1\n");
+    World world(scene, milliseconds(50));
+    RecordOptions options;
+    options.frame_taker = [&](const FrameJob& job) {
+        job.use(world.captureLater(job.sensor)());
+        job.deliver(nullptr);
+    };
+    {
+        Recorder recorder(path("run"), world, options);
+        for (int i = 0; i < 50; ++i) {
+            world.step();
+            recorder.record(world);
+            EXPECT_TRUE(recorder.finishStep(world, std::chrono::steady_clock::time_point::max()));
+            if (i % 10 == 9) world.change(Scene(scene));
+        }
+        recorder.end(world);
+    }
+    const std::string scans = readAll(path("run/scans.jsonl"));
+    std::size_t frames = 0;
+    for (auto at = scans.find("\"c9\""); at != std::string::npos; at = scans.find("\"c9\"", at + 1))
+        ++frames;
+    EXPECT_EQ(frames, 3U) << "at 0, 1 and 2 s";
+    const std::string bumpers = readAll(path("run/bumpers.csv"));
+    EXPECT_EQ(std::count(bumpers.begin(), bumpers.end(), '\n'), 2) << bumpers;
+}
+
+TEST_F(RecordLines, FramesMayBeLeftOut) {
+    const Scene scene = room("camera id=c9 at=0,1,1 pixels=8,6 rate=1\n");
+    World world(scene, milliseconds(50));
+    {
+        Recorder recorder(path("run"), world, {.readings = false});
+        world.step();
+        recorder.record(world);
+        recorder.end(world);
+    }
+    EXPECT_EQ(readAll(path("run/scans.jsonl")).find("c9"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(path("run/pictures")));
+}
+
 /// The record does not depend on the thread that makes frames; frames unfinished at the end are
 /// left out.
 TEST_F(RecordLines, FramesMayBeMadeAside) {

@@ -12,9 +12,12 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <map>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/number.h"
@@ -71,6 +74,14 @@ std::int64_t strideOf(double rate, double most) {
 }  // namespace
 
 struct Recorder::Data {
+    /// Which frames of a sensor are recorded.
+    struct FrameClock {
+        std::string id = {};
+        double rate = 0;
+        std::int64_t stride = 0;   // 0: none
+        std::int64_t period = -1;  // recorded last
+    };
+
     Data(const std::string& name, const RecordOptions& how, EventLog* log, const TrackLog* told,
          SimTime step)
         : options(how),
@@ -133,10 +144,10 @@ struct Recorder::Data {
     // Of the world's sensors, rebuilt after a change.
     std::int64_t changes = -1;
     std::vector<Sensor> receivers;
-    std::vector<std::int64_t> strides;  // of frames; 0: none
-    std::vector<std::int64_t> periods;  // recorded last
+    std::vector<FrameClock> frame_clocks;
     bool has_sonars = false;
-    std::vector<std::vector<bool>> felt;  // pressed bumpers of each robot
+    std::vector<std::vector<bool>> felt;   // pressed bumpers of each robot
+    std::vector<std::string> felt_robots;  // their ids
     std::optional<Periods> sonar_periods;
     SimTime sonars_due{};
     // Of the step recorded last: the next of World::latestReadings() to be written, and frames,
@@ -211,29 +222,51 @@ void Recorder::Data::remember(const World& world) {
     flushed_all = false;
 }
 
-/// Looks only if the records of the world have changed.
+/// Looks only if the records of the world have changed. Indices may have changed, too: what was
+/// recorded last belongs to ids.
 void Recorder::Data::lookAtSensors(const World& world) {
     if (std::exchange(changes, world.changes()) == world.changes()) return;
     receivers.clear();
-    strides.clear();
+    std::map<std::string, FrameClock> before;
+    for (FrameClock& clock : frame_clocks) before.emplace(clock.id, std::move(clock));
+    frame_clocks.clear();
     for (const Sensor& sensor : world.sensors()) {
         if (sensor.tryAs<Receiver>() != nullptr) receivers.push_back(sensor);
-        strides.push_back(isHeavy(sensor) ? strideOf(periodRate(sensor), options.frame_rate) : 0);
+        if (!isHeavy(sensor)) {
+            frame_clocks.emplace_back();
+            continue;
+        }
+        const double rate = periodRate(sensor);
+        const auto known = before.find(sensor.id);
+        const bool goes_on = known != before.end() && known->second.rate == rate;
+        frame_clocks.push_back(FrameClock{.id = sensor.id,
+                                          .rate = rate,
+                                          .stride = strideOf(rate, options.frame_rate),
+                                          .period = goes_on ? known->second.period : -1});
     }
-    periods.assign(strides.size(), -1);
     has_sonars = false;
-    for (const PlacedRobot& robot : world.robots())
-        has_sonars = has_sonars || !robot.model.sonar.places.empty();
-    // Indices may have changed.
+    std::map<std::string, std::vector<bool>> felt_before;
+    for (std::size_t i = 0; i < felt.size(); ++i)
+        felt_before.emplace(felt_robots[i], std::move(felt[i]));
     felt.clear();
+    felt_robots.clear();
+    for (const PlacedRobot& robot : world.robots()) {
+        has_sonars = has_sonars || !robot.model.sonar.places.empty();
+        std::vector<bool>& bumpers = felt_before[robot.id];
+        if (bumpers.size() != robot.model.bumpers.size()) bumpers.clear();
+        felt.push_back(std::move(bumpers));
+        felt_robots.push_back(robot.id);
+    }
 }
 
 /// Frames are recorded in the step in which their period begins, even if clients take others.
 void Recorder::Data::takeFrames(World& world) {
-    for (std::size_t i = 0; i < strides.size(); ++i) {
-        if (strides[i] == 0) continue;
+    if (!options.readings) return;
+    for (std::size_t i = 0; i < frame_clocks.size(); ++i) {
+        FrameClock& clock = frame_clocks[i];
+        if (clock.stride == 0) continue;
         const std::int64_t period = world.period(i);
-        if (std::exchange(periods[i], period) == period || period % strides[i] != 0) continue;
+        if (std::exchange(clock.period, period) == period || period % clock.stride != 0) continue;
         if (world.isCaptured(i) && world.reading(i).time != world.time()) continue;
         const auto frame = frames.emplace_back(std::make_shared<RecordedFrame>(world.sensors()[i]));
         if (!options.frame_taker) {

@@ -41,11 +41,12 @@ Replay::Replay(const std::string& folder, SimTime step) : Replay(folder, std::op
 Replay::Replay(const std::string& folder, std::optional<SimTime> joined_step)
     : folder_(folder), is_joined_(joined_step), reader_(folder) {
     const bool has_moment = reader_.next();
-    if (!has_moment && !is_joined_)
-        throw FormatError({reader_.name(), 0, 0, "holds no moment of a run: nobody moved in it"});
+    const auto info = recordedInfo(folder);
+    if (!has_moment && !is_joined_ && (!info || info->steps == 0))
+        throw FormatError({reader_.name(), 0, 0,
+                           "holds no moment of a run, and no info.csv tells how long that was"});
     if (const auto change = recordedChange(folder)) changed_ = recordedTime(*change);
     const SimTime begin = has_moment ? recordedTime(reader_.time()) : SimTime(0);
-    const auto info = recordedInfo(folder);
     info_ = info.value_or(RunInfo());
     // A record without a moment of the start began without movers.
     is_late_ = is_joined_ ? !has_moment || begin > SimTime(0)
@@ -60,6 +61,7 @@ Replay::Replay(const std::string& folder, std::optional<SimTime> joined_step)
         step_ = recordedTime(reader_.time()) - begin;
     else
         step_ = std::chrono::milliseconds(5);
+    is_still_ = !has_moment && end().value_or(SimTime(0)) > SimTime(0);
     if ((begin != SimTime(0) && !is_late_) || step_ < World::kMinStep || step_ > World::kMaxStep)
         throw FormatError({reader_.name(), 0, 0,
                            "begins at t=" + formatSimTime(begin) + " with steps of " +
@@ -103,7 +105,7 @@ std::function<void()> Replay::preparation(const World& world, std::optional<SimT
         };
     if (to && *to < world.time() + step_) return nullptr;
     const double before = seconds(world.time() + step_);
-    const bool may_change = is_ahead_ || is_joined_;
+    const bool may_change = !atEnd() || is_joined_;
     if (!may_change || !run_changes_ || !run_changes_->isDue(before)) return nullptr;
     std::unordered_map<std::string_view, Pose2> places;
     for (std::size_t i = 0; i < world.movers().size(); ++i)
@@ -192,10 +194,10 @@ bool Replay::step(World& world) { return step(world, true); }
 bool Replay::step(World& world, bool reads) {
     points_.clear();
     unreached_.clear();
-    if (!is_ahead_ && !is_joined_) return false;
+    if (atEnd() && !is_joined_) return false;
     const SimTime now = world.time() + step_;
     const SimTime time = is_ahead_ ? recordedTime(reader_.time()) : now;
-    const bool is_empty = isEmptyAt(now) && (time - now) % step_ == SimTime(0);
+    const bool is_empty = is_still_ || (isEmptyAt(now) && (time - now) % step_ == SimTime(0));
     if (time != now && !is_empty)
         throw FormatError(
             {reader_.name(), 0, 0,
@@ -206,6 +208,7 @@ bool Replay::step(World& world, bool reads) {
     for (std::size_t i = 0; i < states_.size(); ++i) states_[i] = world.status(i);
     if (is_empty) {
         reads ? world.stepTo(states_, {}) : world.passTo(states_);
+        if (is_still_) readNext(world);
         return true;
     }
     odometries_.assign(world.robots().size(), std::nullopt);
@@ -224,13 +227,22 @@ bool Replay::step(World& world, bool reads) {
     } else {
         world.passTo(states_);
     }
-    is_ahead_ = reader_.next();
+    readNext(world);
     return true;
+}
+
+/// Reads the moment of the next step.
+void Replay::readNext(const World& world) {
+    is_ahead_ = reader_.next();
+    const SimTime next = world.time() + step_;
+    is_still_ = !is_ahead_ && world.movers().empty() && next <= end().value_or(SimTime(0));
 }
 
 std::shared_ptr<const void> Replay::rewind(World& world, const NextScene& beginning) {
     RunReader again(folder_);
-    is_ahead_ = again.next() && (is_late_ || again.next());
+    const bool has_moment = again.next();
+    is_ahead_ = has_moment && (is_late_ || again.next());
+    is_still_ = !has_moment && end().value_or(SimTime(0)) > SimTime(0);
     reader_ = std::move(again);
     movers_.clear();
     if (run_changes_) run_changes_->rewind();

@@ -40,8 +40,9 @@ class Replay {
     /// Sets all movers to the first poses of the record. \throws FormatError for a mover that the
     /// scene lacks
     void placeAtStart(Scene& scene) const;
-    /// Returns true after the last moment of the record.
-    [[nodiscard]] bool atEnd() const { return !is_ahead_; }
+    /// Returns true after the last moment of the record, and behind that, in a world without
+    /// movers, which have moments, after the time to which info.csv says that the run went.
+    [[nodiscard]] bool atEnd() const { return !is_ahead_ && !is_still_; }
     /// Takes the next step of a world that has taken as many steps; false, without a step, at the
     /// end of the record. Collisions are those of events.csv; without it, a mover that begins to
     /// stall has run into "something". Skips recorded movers that the world lacks; movers that are
@@ -92,6 +93,7 @@ class Replay {
   private:
     Replay(const std::string& folder, std::optional<SimTime> joined_step);
     bool step(World& world, bool reads);
+    void readNext(const World& world);
     /// A scene that is ready to be adopted.
     struct Prepared {
         bool rewinds;
@@ -116,6 +118,7 @@ class Replay {
     std::vector<RunState> start_;
     bool is_late_ = false;             // it lacks the moment of the start
     bool is_ahead_ = false;            // the reader has read the moment of the next step
+    bool is_still_ = false;            // it has none, for the world has no movers until the end
     std::vector<RobotStatus> states_;  // of all movers of the world
     std::vector<std::optional<EstimatedPose>> odometries_;  // of all its robots
     std::vector<Collision> collisions_;

@@ -81,6 +81,53 @@ TEST_F(ReplayTest, GoesAsRecordedAndSeesTheSame) {
         EXPECT_TRUE(read[i] == seen[i] || std::abs(read[i] - seen[i]) < 1e-5F) << i;
 }
 
+TEST_F(ReplayTest, GoesOnInARoomWithoutMovers) {
+    const Scene room = scene(kRoom, "laser id=l1 at=1,1\n");
+    World world(room, kStep);
+    {
+        Recorder recorder(folder_.path(), world, {}, 0);
+        for (int i = 0; i < 50; ++i) {
+            world.step();
+            recorder.record(world);
+        }
+        recorder.flush(world);
+    }
+    Replay replay(folder_.path());
+    World again(room, kStep);
+    int steps = 0;
+    for (; !replay.atEnd(); ++steps) ASSERT_TRUE(replay.step(again));
+    EXPECT_EQ(steps, 50);
+    EXPECT_FALSE(replay.step(again));
+    EXPECT_EQ(again.time(), world.time());
+    EXPECT_EQ(again.reading(0).seq, world.reading(0).seq);
+    replay.seek(again, 10 * kStep);
+    EXPECT_EQ(again.time(), 10 * kStep);
+    EXPECT_FALSE(replay.atEnd());
+}
+
+/// A person that is stopped lowers its limbs: the laser sees that in the run, too.
+TEST_F(ReplayTest, SeesTheLimbsOfThoseThatAreStopped) {
+    const Scene room =
+        scene("ispace size=8,6\n", "laser id=l1 at=-3,0,1 range=9\nhuman id=h at=3,0\n");
+    World world(room, kStep);
+    Recorder recorder(folder_.path(), world, {}, 0);
+    world.command(0, {.verb = Verb::Forward, .value = 9});
+    std::vector<std::vector<float>> seen;
+    for (int i = 0; i < 150; ++i) {
+        world.step();
+        recorder.record(world);
+        seen.push_back(rangesOf(world, "l1"));
+    }
+    recorder.flush(world);
+    ASSERT_TRUE(world.status(0).stall);
+    Replay replay(folder_.path());
+    World again(room, kStep);
+    for (int i = 0; i < 150; ++i) {
+        ASSERT_TRUE(replay.step(again));
+        ASSERT_EQ(rangesOf(again, "l1"), seen[static_cast<std::size_t>(i)]) << i;
+    }
+}
+
 TEST_F(ReplayTest, KnowsWhoRanIntoWhom) {
     writeAll(path("robots.csv"),
              "t,id,x,y,heading_deg,stall\n0,r1,0,0,0,0\n0.02,r1,0,0,0,1\n0.04,r1,0,0,0,1\n");
@@ -163,7 +210,8 @@ TEST_F(ReplayTest, RefusesWhatIsNoRun) {
         writeAll(name, header + rows);
         return errorOf(folder_.path(), scene_);
     };
-    EXPECT_EQ(errorWith(""), name + ": error: holds no moment of a run: nobody moved in it");
+    EXPECT_EQ(errorWith(""),
+              name + ": error: holds no moment of a run, and no info.csv tells how long that was");
     EXPECT_EQ(errorWith("1,r1,0,0,0\n"),
               name +
                   ": error: begins at t=1 with steps of 0.005 s, wanted 0 and from 0.000001 to "

@@ -187,6 +187,12 @@ void World::Data::tell(std::size_t mover) {
 /// The state may be any: bounds of room and speed start anew.
 void World::Data::put(std::size_t mover, const RobotStatus& status) {
     moved = moved || status.pose != motions[mover].pose;
+    if (movers[mover].is_person) {
+        const std::size_t person = mover - scene->robots.size();
+        gaits[person].phase = status.phase;
+        const Angle swing = gaits[person].swing(std::hypot(status.speed, status.sidespeed));
+        moved = std::exchange(swings[person], swing) != swing || moved;
+    }
     if (moved) sensors.moved();
     const Motion before = std::exchange(motions[mover], motionOf(status));
     if (mover < odometers.size() && status.pose != before.pose)
@@ -195,10 +201,6 @@ void World::Data::put(std::size_t mover, const RobotStatus& status) {
     for (MoverState& state : states) state.room = 0;
     longest_step.reset();
     states[mover].stall = status.stall;
-    if (!movers[mover].is_person) return;
-    Gait& gait = gaits[mover - scene->robots.size()];
-    gait.phase = status.phase;
-    swings[mover - scene->robots.size()] = gait.swing(std::hypot(status.speed, status.sidespeed));
 }
 
 void World::Data::prepareEchoes() {

@@ -168,7 +168,7 @@ struct World::Data {
     [[nodiscard]] double longestStep() const;
     void setLimits(std::size_t mover);
     void collide(const Collision& collision);
-    void walk(std::size_t mover);
+    bool walk(std::size_t mover);
     void keepGait(std::size_t mover, const Data& before, std::size_t old);
     /// Stops a person that does not walk any more; its command ends.
     void layDown(std::size_t mover);

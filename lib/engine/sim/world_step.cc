@@ -216,7 +216,8 @@ void World::Data::finish(std::size_t mover, Chunk& chunk) {
     const bool has_moved = motion.pose != motions[mover].pose;
     chunk.moved = chunk.moved || has_moved;
     if (mover >= odometers.size()) {
-        walk(mover);
+        // A person that is stopped lowers its limbs where it stands.
+        chunk.moved = walk(mover) || chunk.moved;
     } else {
         if (has_moved)
             odometers[mover].roll(travelOf(motions[mover], motion, moves[mover].duration));
@@ -269,13 +270,15 @@ void World::Data::apply() {
 }
 
 /// Swings the limbs by the way that the body has really gone, 0 after a collision.
-void World::Data::walk(std::size_t mover) {
+/// \returns true if they have moved
+bool World::Data::walk(std::size_t mover) {
     const std::size_t person = mover - scene->robots.size();
     const Motion& motion = next_motions[mover];
     const double speed = std::hypot(motion.drive.speed, motion.side.speed);
     const double path = moves[mover].to.path;
     gaits[person].walk(movers[mover].model.height, motion.drive.speed < 0 ? -path : path, speed);
-    swings[person] = gaits[person].swing(speed);
+    const Angle swing = gaits[person].swing(speed);
+    return std::exchange(swings[person], swing) != swing;
 }
 
 }  // namespace ispace
