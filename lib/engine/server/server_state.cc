@@ -182,6 +182,8 @@ void ServerState::changeAsScripted() {
     while (simulation_->isChangeDue() || scripted_) {
         if (is_changing_ || seek_ || !editor_) return;
         if (!scripted_) {
+            // Records and logs have the frames of this step as they were before the change.
+            if (mayHold() && isAnyMaking()) return;
             const std::string request = simulation_->takeScriptedChange();
             if (request.empty()) continue;
             scripted_ = changeWorld(*this, request);
@@ -249,6 +251,11 @@ std::string prefixOf(const std::string& room) { return room.empty() ? "" : room 
 bool ServerState::areAllAtRest() const {
     return std::all_of(rooms_->states.begin(), rooms_->states.end(),
                        [](const ServerState* each) { return each->isAtRest(); });
+}
+
+bool ServerState::isAnyMaking() const {
+    return std::any_of(rooms_->states.begin(), rooms_->states.end(),
+                       [](const ServerState* each) { return each->isMaking(); });
 }
 
 bool ServerState::holdsWorld() const {

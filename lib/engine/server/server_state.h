@@ -320,6 +320,8 @@ class ServerState {
     bool await();
     /// True while pictures, maps and meshes are computed.
     [[nodiscard]] bool isMaking() const { return capture_worker_ && capture_worker_->open() > 0; }
+    /// Likewise of any world of the run.
+    [[nodiscard]] bool isAnyMaking() const;
     /// True if a background thread has a job running or queued.
     [[nodiscard]] bool isBusy() const {
         return isMaking() || (change_worker_ && change_worker_->open() > 0);

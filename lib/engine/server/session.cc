@@ -172,7 +172,7 @@ void Session::request(std::string_view line) {
 void Session::answer(Words words, bool first) {
     const auto all = requests();
     const auto found = std::find_if(all.begin(), all.end(), [&](const Request& request) {
-        return request.verb == words.front() && request.role.value_or(role_) == role_;
+        return request.verb == words.front() && isOfRole(request);
     });
     if (found == all.end()) {
         RoleService* const service = role_ == Role::None ? serviceOf(words.front()) : nullptr;
@@ -453,11 +453,17 @@ void Session::answerSeek() {
     out_.append("OK SEEK t=").append(formatMilliseconds(world().time())).append("\n");
 }
 
+/// Roles of extensions share the requests about sensors if they read some.
+bool Session::isOfRole(const Request& request) const {
+    return request.role.value_or(role_) == role_ &&
+           (request.role != Role::Guest || (guest_ && !guest_->sensors().empty()));
+}
+
 void Session::help(Words /*words*/) {
     std::string_view separator = " ";
     out_ += "OK HELP";
     for (const Request& request : requests()) {
-        if (request.role.value_or(role_) != role_) continue;
+        if (!isOfRole(request)) continue;
         if (request.answer == &Session::shutdown && !state_->limits().shutdown) continue;
         if (request.answer == &Session::change && !state_->mayChange()) continue;
         if (request.answer == &Session::rate &&

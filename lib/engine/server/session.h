@@ -241,6 +241,7 @@ class Session {
     };
     [[nodiscard]] RoleService* serviceOf(std::string_view verb) const;
     void answer(Words words, bool first);
+    [[nodiscard]] bool isOfRole(const Request& request) const;
     void takeGuestRole(RoleService& service, Words words);
     bool guestRequest(Words words);
     [[nodiscard]] bool guestIsReady() const { return !guest_->waits(); }

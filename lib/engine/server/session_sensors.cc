@@ -167,7 +167,9 @@ void Session::streamSensor() {
 
 std::shared_ptr<const std::string> Session::takeScan() {
     sync();
-    if (scan_ && is_stale_) {
+    if (scan_ && is_stale_ && every_ > 0 && world().period(subject_) % every_ != 0) {
+        scan_ = nullptr;  // the next one is due with a later period
+    } else if (scan_ && is_stale_) {
         ReplyForm form = form_;
         form.stream = true;
         scan_ = nullptr;

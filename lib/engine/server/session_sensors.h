@@ -23,7 +23,7 @@ enum class FrameFormat {
     Png,      ///< a file; depths: 16-bit grey, millimetres, 0 for no return
     Jpeg,     ///< a file
     Rgb,      ///< one byte per colour of each pixel
-    Depth32,  ///< float32 per pixel as the device measures, +infinity for no return
+    Depth32,  ///< float32 per pixel along the axis (spherical: the ray), +infinity for no return
     Depth16,  ///< uint16 per pixel, millimetres, 0 for no return
     Cloud     ///< float32 x, y, z per pixel in the sensor's frame, NaN for no return
 };

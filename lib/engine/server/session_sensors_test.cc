@@ -169,6 +169,17 @@ TEST(SessionSensors, ASlowReaderGetsTheNewestPictureAndCostsNoOthers) {
     EXPECT_EQ(client.takeScan(), nullptr);
 }
 
+TEST(SessionSensors, ASlowReaderGetsNoOtherPicturesThanItAskedFor) {
+    SensorTalk talk;
+    Session& client = talk.client("SENSOR c1");
+    talk.ask(client, "STREAM every=3");
+    talk.step(6);
+    talk.step(17);  // to the middle of a period
+    EXPECT_EQ(client.takeScan(), nullptr) << "the unread one is late, and the next one not due";
+    talk.step(2);
+    EXPECT_TRUE(testing::streamed(client).starts_with("SCAN c1 t=2.400 seq=12 "));
+}
+
 /// A client that has left a picture unread for so long that it is stale. Frames are made aside.
 struct SlowTalk : SensorTalk {
     SlowTalk() : slow(client("SENSOR c1")) {
