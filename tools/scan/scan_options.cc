@@ -211,6 +211,12 @@ void ScanCommand::check() {
         throw UsageError("--las-version is about las, and --to says " + o.format);
     if (line_.given("--compression") && o.format != "mcap")
         throw UsageError("--compression is about mcap, and --to says " + o.format);
+    if (line_.given("--coordinates") && o.format != "csv" && o.format != "pcd" &&
+        o.format != "ply" && o.format != "las")
+        throw UsageError("--coordinates is about points in csv, pcd and ply, and --to says " +
+                         o.format);
+    if (line_.given("--encoding") && o.format != "pcd" && o.format != "ply")
+        throw UsageError("--encoding is about pcd and ply, and --to says " + o.format);
     if (line_.given("--layers") && o.format != "png" && o.format != "jpeg")
         throw UsageError("--layers are files beside pictures in png or jpeg, and --to says " +
                          o.format);
@@ -253,6 +259,12 @@ void ScanCommand::checkSensors(const std::vector<Sensor>& read) const {
                                  " is for pictures of cameras, and no camera is read");
     const bool has_depths =
         options_.format == "png" && reads([](const Sensor& sensor) { return sensor.is<Ranger>(); });
+    const bool has_map =
+        options_.format == "png" && reads([](const Sensor& sensor) { return sensor.is<Laser>(); });
+    if (size_ && !has_map)
+        throw UsageError("--size is for views and for obstacle maps of lasers, and none is drawn");
+    if (line_.given("--depth-scale") && !has_depths)
+        throw UsageError("--depth-scale is for depth pictures of rangers, and none is written");
     if (line_.given("--color") && !has_depths)
         throw UsageError("--color is for depth pictures of rangers, and none is written");
     if (options_.spectrum && !(has_depths && options_.color))

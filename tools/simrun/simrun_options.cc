@@ -186,6 +186,11 @@ void SimrunCommand::checkReplay() const {
         if (isStdout(o.report)) throw UsageError("give --report a file, such as run.html");
         (void)outputFormat({}, o.report, {"json", "html", "pdf"});
     }
+    if (o.record.empty())
+        for (const char* option : {"--record-readings", "--record-frames", "--record-sonars",
+                                   "--record-every", "--record-columns", "--record-compression"})
+            if (line_.given(option))
+                throw UsageError(std::string(option) + " is about a record: give --record DIR");
     if (o.replay.empty()) {
         for (const char* option : {"--from", "--hold"})
             if (line_.given(option))

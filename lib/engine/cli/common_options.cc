@@ -79,7 +79,8 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
                Enters::Nothing);
     const auto take_seed = [&options](const std::string& text) {
         const auto seed = parseInteger(text);
-        if (!seed || *seed < 0) throw UsageError('`' + text + "` is not a whole number from 0 on");
+        if (!seed || *seed < 0)
+            throw UsageError('`' + text + "` is not a whole number from 0 to 2^63 - 1");
         options.seed = static_cast<std::uint64_t>(*seed);
     };
     line.parsed("--seed", "N", take_seed, "seed of all random numbers (default 0)",

@@ -14,6 +14,7 @@
 #include "base/glob.h"
 #include "base/json_writer.h"
 #include "base/message.h"
+#include "cli/common_options.h"
 #include "cli/operands.h"
 #include "extensions/pressure/pressure.h"
 
@@ -39,6 +40,7 @@ class PressureOptions : public OptionGroup {
     void take(const CommandLine& line) override { noise_ = line.given("--noise"); }
 
     void run(const TaskInput& input) override {
+        static_cast<void>(outputFormat({}, input.common.output, {"jsonl"}));
         const SceneInput scene = readScene({input.operands, input.rules, false});
         const World world(scene.scene, std::chrono::milliseconds(5),
                           {.seed = input.common.seed, .sensor_noise = noise_});
