@@ -26,7 +26,8 @@ bool isShare(std::string_view key) { return key == "level"; }
 bool isColor(std::string_view key) { return key == "color"; }
 /// Returns true for states that are on or off: any other 0 or 1 is a number.
 bool isFlag(std::string_view key) {
-    return key == "on" || key == "open" || key == "blind" || key == "motion" || key == "broken";
+    return key == "on" || key == "open" || key == "blind" || key == "motion" || key == "broken" ||
+           key == "occupied" || key == "touched";
 }
 
 /// Rounds to significant digits.
@@ -298,7 +299,8 @@ MqttMessage describeKey(Entity entity, std::string_view keyword, const MqttKey& 
             entity.json().key("state_class").value(known);
         // On a mat are movers, by their ids.
         if (!isFlag(key.name) || key.name == "on") return entity.message("sensor", prefix);
-        if (key.name == "broken") entity.json().key("device_class").value("occupancy");
+        if (key.name == "broken" || key.name == "occupied")
+            entity.json().key("device_class").value("occupancy");
         return entity.message("binary_sensor", prefix);
     }
     if (key.spec->type == KeyType::Flag) return entity.message("switch", prefix);
