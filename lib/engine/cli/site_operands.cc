@@ -132,6 +132,15 @@ std::size_t SeenSite::roomAt(Point3 point) const {
     return highest.value_or(from_above.back());
 }
 
+std::vector<std::string> operandsToEdit(const SiteInput& input) {
+    std::vector<std::string> operands = input.named;
+    const std::string& environment = input.environment_operand;
+    if (!environment.empty() &&
+        std::find(operands.begin(), operands.end(), environment) == operands.end())
+        operands.insert(operands.begin(), environment);
+    return operands;
+}
+
 OtherSite readOtherLayout(const SiteInput& input, const std::string& operand,
                           const SceneRules& rules) {
     if (input.isOneRoom()) {

@@ -94,6 +94,10 @@ class SeenSite {
     std::optional<Coupling> coupling_;
 };
 
+/// Returns the operands of a command that edits what was read: those given, and before them ENV if
+/// the record `environment` of LAYOUT named it.
+std::vector<std::string> operandsToEdit(const SiteInput& input);
+
 /// The site with another layout.
 struct OtherSite {
     SiteScene building;

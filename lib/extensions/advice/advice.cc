@@ -3,6 +3,7 @@
 // limit or a signal it reports the best so far, and says so.
 #include "extensions/advice/advice.h"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -70,7 +71,14 @@ class AdviceGroup final : public CoverageGroup {
         SearchWatch watch(makeProgress("coverage", site.common.progress, site.common.quiet),
                           time_limit_);
         advice_ = adviceFor(site.input.building, site.coverage, wanted, shippedDevices(), watch);
-        advice_.command = editCommand(site.input.named, site.rules);
+        advice_.command = editCommand(operandsToEdit(site.input), site.rules);
+        advice_.has_fixed =
+            std::any_of(site.input.rooms().begin(), site.input.rooms().end(), [](const auto& room) {
+                return std::any_of(
+                    room->sensors.begin(), room->sensors.end(), [](const Sensor& sensor) {
+                        return !sensor.mount && !sensor.person && kindOf(sensor.model).is_arranged;
+                    });
+            });
         advice_.is_cut = watch.stopped();
         findings.signal = watch.signal();
         findings.parts.sum.push_back(std::make_shared<AdviceSection>(advice_));

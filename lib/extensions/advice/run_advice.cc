@@ -87,7 +87,8 @@ std::string adviceText(const RecordedRun& run, std::size_t most) {
                 formatFixed(kPoints * (one.seen - *before), 2) +
                 " points, robots and people are seen for " + percentText(one.seen) +
                 " of their time\n    " +
-                commandOf(editCommand(run.input.named, run.rules), one.change.edits) + '\n';
+                commandOf(editCommand(operandsToEdit(run.input), run.rules), one.change.edits) +
+                '\n';
     return text;
 }
 

@@ -106,6 +106,11 @@ Pose3 poseAfter(Pose3 pose, const Trial& trial) {
     return pose;
 }
 
+/// Returns the same turn from -179 to 180 degrees.
+int wholeTurn(int degrees) {
+    return degrees > 180 ? degrees - 360 : degrees <= -180 ? degrees + 360 : degrees;
+}
+
 /// Lowers the bounds of trials of a sensor to the estimates of cells, with their error.
 /// \param present floor that it covers, and private floor that it sees, below 0
 void boundByCells(std::vector<Trial>& trials, const Sensor& sensor, const FloorGain& present,
@@ -227,17 +232,27 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
         gain.take(i);
         if (coarse) coarse->count(sensors[i]);
         std::vector<Trial> trials;
-        if (gain.turns(i)) {
-            for (int degrees = kTurnStep; degrees < 360; degrees += kTurnStep)
-                trials.push_back({i, degrees > 180 ? degrees - 360 : degrees});
-            const std::optional<Trial> before = turn;
+        if (gain.turns(i) && coarse) {
+            // Estimates of all whole degrees cost the rays of one place.
+            for (int degrees = 1; degrees <= 180; ++degrees)
+                for (const int turned : {degrees, -degrees})
+                    if (turned != -180) trials.push_back({i, turned});
             attempt(trials, turn);
-            if (turn && (!before || turn->gain > before->gain)) {
-                trials.clear();
-                for (int degrees = -kTurnStep + 1; degrees < kTurnStep; ++degrees)
-                    if (degrees != 0) trials.push_back({i, turn->turn + degrees});
-                attempt(trials, turn);
+        } else if (gain.turns(i)) {
+            // Steps, then whole degrees about the best one and about the present heading. Other
+            // sensors' turns are compared at the end, so that the order of records is of no matter.
+            std::optional<Trial> own;
+            for (int degrees = kTurnStep; degrees < 360; degrees += kTurnStep)
+                trials.push_back({i, wholeTurn(degrees)});
+            attempt(trials, own);
+            const int middle = own ? own->turn : 0;
+            trials.clear();
+            for (int degrees = -kTurnStep + 1; degrees < kTurnStep; ++degrees) {
+                if (degrees != 0) trials.push_back({i, wholeTurn(middle + degrees)});
+                if (degrees != 0 && middle != 0) trials.push_back({i, degrees});
             }
+            attempt(trials, own);
+            if (own && (!turn || own->gain > turn->gain)) turn = own;
         }
         SiteRules rules;
         rules.height = sensors[i].pose.position.z;

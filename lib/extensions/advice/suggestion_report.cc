@@ -45,7 +45,11 @@ void AdviceSection::writeJson(JsonWriter& json) const {
 std::string AdviceSection::text() const {
     std::string text = "\nsuggestions:\n";
     if (advice_.suggestions.empty())
-        text = advice_.is_cut ? "\n" : "\nno change of one sensor or piece helps\n";
+        text = advice_.is_cut ? "\n"
+               : !advice_.has_fixed
+                   ? "\nno sensor that stands by itself was found, to move or to add "
+                     "one like it; no change of a piece helps\n"
+                   : "\nno change of one sensor or piece helps\n";
     for (const Suggestion& suggestion : advice_.suggestions) {
         text += "  " + printable(suggestion.text) + ": " + gainText(suggestion) + '\n';
         text += "    " + commandOf(advice_.command, suggestion.edits) + '\n';

@@ -18,6 +18,7 @@ namespace ispace::advice {
 struct Advice {
     std::vector<Suggestion> suggestions;
     std::string command;
+    bool has_fixed = true;  ///< some sensor stands by itself: others like it may be added
     bool is_short = false;  ///< requirements fail, and no suggestion meets all of them
     bool is_cut = false;    ///< time or a signal ended the search: others may help more
 };
