@@ -31,7 +31,10 @@ bool isShort(const Arrangement& arrangement) {
 
 /// Returns the step that a signal or the time limit ended after the candidates were chosen.
 std::string unfinishedText(const ArrangeOptions& how) {
-    return how.target ? "the search for fewer sensors" : how.refine ? "refining" : "the curve";
+    return how.target        ? "the search for fewer sensors"
+           : how.refine      ? "refining"
+           : how.wants_curve ? "the curve"
+                             : "the list of candidates";
 }
 
 std::string overText(const ArrangeOptions& how, const Arrangement& arrangement) {
@@ -213,7 +216,7 @@ std::string shortfallText(const ArrangeOptions& how, const Arrangement& arrangem
         return "the target of 100% is not reached: " +
                counted(arrangement.sensors.size(), "sensor covers", "sensors cover") +
                " all cells, but " + formatPercent(roundSignificant(*arrangement.exact_share)) +
-               " of the exact area; --target 99.9% asks for less, --proof poses for all";
+               " of the exact area; --target 99.9% asks for less, --candidates for denser ones";
     std::string text = "the target of " + formatPercent(how.target.value_or(1)) +
                        " is not reached: " +
                        counted(arrangement.sensors.size(), "sensor covers ", "sensors cover ") +

@@ -141,7 +141,8 @@ PathChoice parseWay(std::string_view text) {
     const auto comma = text.find(',');
     if (comma == std::string_view::npos || comma == 0 || comma + 1 == text.size() ||
         text.find(',', comma + 1) != std::string_view::npos)
-        throw UsageError('`' + std::string(text) + "` is not FROM,TO: the ids of two zones");
+        throw UsageError('`' + std::string(text) +
+                         "` is not FROM,TO: the ids of two zones; --zone adds others, zone1 first");
     return {std::string(text.substr(0, comma)), std::string(text.substr(comma + 1))};
 }
 

@@ -242,6 +242,11 @@ TEST_F(PartFileTest, AMergeRefusesPartsOfOtherJobs) {
     EXPECT_EQ(
         with([](JobId& job) { job.history.back() += " --noise"; }),
         "the command (`scan room.glb --frames 10 --noise`, `scan room.glb --frames 10`) differs\n");
+    JobId plain = head().job, seeded = plain;
+    plain.history = {"arrange crowded.env --sensor laser,range=4:2 --candidates 0.6,0.6,8"};
+    seeded.history = {plain.history.back() + " --seed 5"};
+    EXPECT_EQ(plain.differenceFrom(seeded),
+              "the command (`... --candidates 0.6,0.6,8`, `... --candidates 0.6,0.6,8 --seed 5`)");
     EXPECT_TRUE(
         with([](JobId& job) { job.version = "9.9"; }).starts_with("the version of ispace (`9.9"));
     PartHead other = head();

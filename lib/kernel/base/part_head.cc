@@ -46,6 +46,20 @@ std::string beside(const std::string& one, const std::string& other) {
     return " (" + excerpt(one) + ", " + excerpt(other) + ")";
 }
 
+/// Names two commands: of long ones the parts from the last word on that both have.
+std::string besideCommands(std::string one, std::string other) {
+    constexpr std::size_t kShort = 60;  // that excerpt() leaves whole
+    if (one.size() <= kShort && other.size() <= kShort) return beside(one, other);
+    const auto [end, in_other] = std::mismatch(one.begin(), one.end(), other.begin(), other.end());
+    auto same = static_cast<std::size_t>(end - one.begin());
+    for (int word = 0; word < 2 && same > 0; ++word) {
+        const std::size_t space = one.rfind(' ', same - 1);
+        same = space == std::string::npos ? 0 : space;
+    }
+    if (same == 0) return beside(one, other);
+    return beside("..." + one.substr(same), "..." + other.substr(same));
+}
+
 }  // namespace
 
 std::string_view takeUpTo(std::string_view& text, char separator) {
@@ -61,8 +75,8 @@ std::string JobId::differenceFrom(const JobId& other) const {
     if (room != other.room) return "the room";
     const std::string none;
     if (history != other.history)
-        return "the command" + beside(history.empty() ? none : history.back(),
-                                      other.history.empty() ? none : other.history.back());
+        return "the command" + besideCommands(history.empty() ? none : history.back(),
+                                              other.history.empty() ? none : other.history.back());
     if (seed != other.seed)
         return "the seed" + beside(std::to_string(seed), std::to_string(other.seed));
     if (form != other.form) return "the format" + beside(form, other.form);
