@@ -29,6 +29,7 @@ const Extensions& extensions() {
         ISPACE_MOTES
         ISPACE_THERMOMETERS
         ISPACE_DOORCOUNTERS
+        ISPACE_DAYS
         ISPACE_GOALS
         ISPACE_EVENNESS
         ISPACE_EXPECT

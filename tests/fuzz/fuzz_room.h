@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "extensions.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "sim/world.h"
@@ -27,6 +28,7 @@ class FuzzRoom {
     static const Scene& sceneOf(const std::string& layout) {
         static std::map<std::string, Scene> scenes;
         if (const auto found = scenes.find(layout); found != scenes.end()) return found->second;
+        static_cast<void>(extensions());  // their records and things
         const Document document =
             readRecordText("#env 1\nispace size=8,6\n" + layout, "room.env", sceneSchemas());
         return scenes.emplace(layout, makeScene(document, nullptr, DeviceCatalogue()))

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scripts of `simrun --script`: commands in the order of time, for robots and people that exist,
-// and days of people.
-#include "extensions.h"
+// Scripts of `simrun --script`: commands in the order of time, for robots and people that exist.
 #include "fuzz.h"
 #include "fuzz_room.h"
-#include "sim/activity.h"
 #include "sim/simulation.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
-    static_cast<void>(extensions());  // things that people lock and draw
     FuzzRoom room(
         "robot id=r1 at=0,0\nhuman id=h1 at=2,2 tag=42\nzone id=z1 at=-1,1 size=1,1\n"
         "lamp id=l1 at=1,1\nswitch id=b1 at=0,2\nwall id=w from=-2,-3 to=-2,3\ninside at=-3,0\n"
@@ -16,11 +12,6 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         "curtain id=c1 from=1,-3 to=1,3\n");
     World& world = room.world();
     std::vector<TimedCommand> script = readScript(bytes, "run.txt", world);
-    DayPlan plan = readDayPlan(bytes, "run.txt", world);
-    for (const DayLine& line : plan.lines) {
-        require(world.personNamed(line.person).has_value(), "a day of a person who does not exist");
-        require(!line.actions.empty() && !line.name.empty(), "an activity without action or name");
-    }
     SimTime time{};
     for (const TimedCommand& timed : script) {
         require(timed.time >= time, "commands are not in the order of time");
@@ -28,7 +19,6 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         time = timed.time;
     }
     Simulation simulation(world, std::move(script), {Clock::Kind::Step, 1}, {});
-    simulation.follow(std::move(plan));
     constexpr int kSteps = 3;
     simulation.allow(kSteps);
     simulation.run({}, std::chrono::hours(1));

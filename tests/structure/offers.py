@@ -7,6 +7,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 TOOLS = ("envc", "arrange", "scan", "coverage", "simrun")
 extensions, folder = pathlib.Path(sys.argv[1]) / "lib/extensions", pathlib.Path(sys.argv[2])
@@ -40,6 +41,13 @@ for name, rows in offers.items():
             if all(f"`{offer}` is none of" in said(tool, "-", "-o", "x", "--to", offer, text="")
                    for tool in ("envc", "coverage")):
                 faults.append(f"{name} writes no {offer}")
+        elif owner == "line":
+            with tempfile.NamedTemporaryFile("w", suffix=".txt") as script:
+                script.write(f"{offer}\n")
+                script.flush()
+                about = said("simrun", "-", "--script", script.name, "--until", "0", text="#env 1\nispace size=4,4\n")
+            if "wanted TIME ROBOT COMMAND" in about or not about:
+                faults.append(f"{name} reads no line {offer}: {about}")
         elif owner == "proof":
             if f" {offer}|" not in (about := said("arrange", "--help", "--proof")) and f"|{offer}" not in about:
                 faults.append(f"{name} has no proof {offer}: {about}")

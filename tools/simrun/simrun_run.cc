@@ -107,12 +107,12 @@ void forward(Replay& replay, World& world, SimTime from) {
 /// The commands of --script.
 struct Script {
     std::vector<TimedCommand> commands;
-    DayPlan days;  ///< of people
+    std::vector<std::shared_ptr<Director>> directors;
 };
 Script scriptOf(const SimrunOptions& options, const SiteInput& input, const World& world) {
     if (options.script.empty()) return {};
     const std::string text = scriptText(options, input), file = displayName(options.script);
-    return {readScript(text, file, world), readDayPlan(text, file, world)};
+    return {readScript(text, file, world), readDirectors(text, file, world)};
 }
 
 /// Warns of movers with a trip over storeys, in the run of one room.
@@ -150,7 +150,8 @@ class RoomRunSite final : public RunSite {
         if (replay_) forward(*replay_, world_, options.from);
         Script script = scriptOf(options, input, world_);
         simulation_.emplace(world_, std::move(script.commands), options.clock, options.until);
-        simulation_->follow(std::move(script.days));
+        for (std::shared_ptr<Director>& director : script.directors)
+            simulation_->follow(std::move(director));
         if (replay_) simulation_->replay(*replay_, options.holds);
         sole_.emplace(*simulation_);
     }

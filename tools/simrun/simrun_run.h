@@ -10,7 +10,6 @@
 #include "cli/common_options.h"
 #include "cli/site_operands.h"
 #include "scene/scene.h"
-#include "sim/activity.h"
 #include "sim/replay.h"
 #include "sim/world.h"
 #include "sim/worlds.h"

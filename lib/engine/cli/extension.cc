@@ -6,6 +6,7 @@
 #include "io/exporters.h"
 #include "io/importers.h"
 #include "record/missing_keywords.h"
+#include "sim/script_lines.h"
 
 namespace ispace {
 
@@ -30,6 +31,8 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
             addMissingKeyword(name, extension);
         else if (owner == "format")
             addMissingFormat(name, extension);
+        else if (owner == "line")
+            addMissingScriptLine(name, extension);
         else if (owner == "export")
             addMissingExporter(name, extension);
         else if (owner == "requirement")

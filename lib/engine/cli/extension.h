@@ -38,9 +38,9 @@ struct ToolOptions {
 /// A contribution. All but the name may be left out.
 struct Extension {
     std::string_view name;  ///< of its folder
-    /// Adds its rows to the tables of the library: importers, records, kinds of sensors, verbs of
-    /// people. It is called once, before the first input is read, by one thread: later the tables
-    /// are read without locks.
+    /// Adds its rows to the tables of the library: importers, records, kinds of sensors, lines
+    /// of scripts. It is called once, before the first input is read, by one thread: later the
+    /// tables are read without locks.
     void (*add)() = nullptr;
     std::vector<ToolOptions> options = {};  ///< at most one for each tool
     std::vector<std::unique_ptr<ObjectiveGroup> (*)()> objectives = {};  ///< of `arrange`
@@ -56,8 +56,8 @@ struct Extension {
 /// What an extension that a build lacks would bring.
 struct MissingOffer {
     std::string_view extension;
-    /// A tool (`name` is its option), or "record", "format", "export", "objective", "proof"
-    /// or "requirement".
+    /// A tool (`name` is its option), or "record", "format", "export", "objective", "proof",
+    /// "requirement" or "line", of scripts.
     std::string_view owner;
     std::string_view name;
 };

@@ -16,7 +16,7 @@
 #include "base/number.h"
 #include "record/edit.h"
 #include "scene/room_state.h"
-#include "sim/activity.h"
+#include "sim/script_lines.h"
 #include "sim/world.h"
 
 namespace ispace {
@@ -349,6 +349,10 @@ void ScriptReader::read(std::string_view line, int number) {
     line_ = number;
     const std::vector<Piece> words = wordsOf(line);
     if (words.empty()) return;
+    if (const auto extension = missingScriptLine(words.front().text); !extension.empty())
+        return finding(words.front().column,
+                       excerpt(words.front().text) + " begins a line that the extension " +
+                           std::string(extension) + " reads: this build lacks that extension");
     const auto time = readTime(words.front());
     if (words.size() < 3) {
         finding(words.back().column, words.size() == 1
@@ -394,7 +398,7 @@ std::vector<TimedCommand> readScript(std::string_view text, const std::string& f
     LineReader lines(text);
     // No word of the language holds a #.
     while (const auto line = lines.next())
-        if (const auto code = line->substr(0, line->find('#')); !isDayLine(code))
+        if (const auto code = line->substr(0, line->find('#')); !isDirectorsLine(code))
             reader.read(code, lines.number());
     return reader.take();
 }

@@ -15,7 +15,6 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "sim/activity.h"
 
 namespace ispace {
 
@@ -154,8 +153,8 @@ void Simulation::tellScripted() {
     }
 }
 
-void Simulation::follow(DayPlan plan) {
-    if (!plan.lines.empty()) director_ = std::make_shared<ActivityDirector>(std::move(plan));
+void Simulation::follow(std::shared_ptr<Director> director) {
+    directors_.push_back(std::move(director));
 }
 
 void Simulation::keepOpen(const std::string& door, SimTime until) {
@@ -170,7 +169,8 @@ bool Simulation::isKeptOpen(const std::string& door) const {
 }
 
 bool Simulation::isOpenForPeople(const std::string& door) const {
-    return director_ != nullptr && director_->hasOpened(door);
+    return std::any_of(directors_.begin(), directors_.end(),
+                       [&](const auto& director) { return director->hasOpened(door); });
 }
 
 std::string Simulation::takeScriptedChange() {
@@ -326,7 +326,8 @@ void Simulation::step() {
     endIfReached();
     if (!finished_) giveScripted();
     tellScripted();
-    if (!finished_ && director_) director_->stepped(*this);
+    if (!finished_)
+        for (const std::shared_ptr<Director>& director : directors_) director->stepped(*this);
     for (const auto& observer : observers_) observer();
 }
 

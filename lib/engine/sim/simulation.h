@@ -35,15 +35,13 @@
 #include "sim/pace.h"
 #include "sim/recorder.h"
 #include "sim/replay.h"
+#include "sim/script_lines.h"
 #include "sim/track_log.h"
 #include "sim/world.h"
 
 namespace ispace {
 
 using WallTime = std::chrono::steady_clock::time_point;
-
-class ActivityDirector;
-struct DayPlan;
 
 /// Relation of simulated time to wall time.
 struct Clock {
@@ -97,10 +95,11 @@ class Simulation {
     /// sufficient
     void tellChange(std::string request, const std::string& scene_text);
 
-    /// Makes people follow a plan of their days. Call it before the first step.
-    void follow(DayPlan plan);
-    /// Returns true if people do, so that the time of day matters.
-    [[nodiscard]] bool followsDays() const { return director_ != nullptr; }
+    /// Carries out lines of a script that extensions have read. Call it before the first step.
+    /// \pre not null
+    void follow(std::shared_ptr<Director> director);
+    /// Returns true if a script has such lines, as the days of people: the time of day matters.
+    [[nodiscard]] bool followsDays() const { return !directors_.empty(); }
     /// Keeps an open door from being shut behind people on their days until then.
     void keepOpen(const std::string& door, SimTime until);
     [[nodiscard]] bool isKeptOpen(const std::string& door) const;
@@ -261,7 +260,7 @@ class Simulation {
     std::vector<TimedCommand> script_;
     std::vector<std::string> scripted_;  // ids of the movers that the script commands by index
     std::size_t next_ = 0;               // of script_
-    std::shared_ptr<ActivityDirector> director_;  // of people with a plan; null: none
+    std::vector<std::shared_ptr<Director>> directors_;
     std::map<std::string, std::pair<SimTime, SimTime>> kept_open_;  // doors: since when, until when
     std::deque<AskedChange> due_changes_;                           // of the script
     std::function<void(const std::string& reason)> when_refused_;   // of the one taken last

@@ -1,28 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <string>
-#include <vector>
 
 #include "base/error.h"
 #include "cli/common_options.h"
 #include "env/environment.h"
 #include "extensions/curtains/curtain.h"
 #include "extensions/curtains/curtains_test.h"
-#include "record/edit.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
-#include "scene/room_state.h"
-#include "sim/activity.h"
-#include "sim/goal_paths.h"
-#include "sim/simulation.h"
 
 namespace ispace::curtains {
 namespace {
-
-using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 Scene sceneOf(const std::string& curtain) {
     testing::addCurtainsOnce();
@@ -65,28 +55,6 @@ TEST(Curtain, StopsLightAsFarAsItIsDrawn) {
         for (const Segment2& line : scene.environment.band(0, 1.7).sheets)
             EXPECT_FALSE(line.a.x == 0 && line.b.x == 0);
     }
-}
-
-TEST(Curtain, LetsPeoplePass) {
-    const Scene scene = sceneOf(kAcross + '\n');
-    EXPECT_FALSE(GoalPaths(scene, 0.25, 1.7).way({-2, 0}, "right").empty());
-    World world(scene, milliseconds(100));
-    Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
-    simulation.follow(readDayPlan("at 00:00 ann closes c; goes right; opens c\n", "s.txt", world));
-    std::vector<std::string> changes;
-    for (int i = 0; i < 80; ++i) {
-        while (simulation.isChangeDue()) {
-            changes.push_back(simulation.takeScriptedChange());
-            world.change(makeScene(editedRecords(world.scene(), parseEdits(changes.back()),
-                                                 [](const std::string&) { return std::nullopt; }),
-                                   world.scene(), shippedDevices()));
-        }
-        simulation.allow(1);
-        simulation.run(std::chrono::steady_clock::now(), seconds(10));
-    }
-    EXPECT_GT(world.status(0).pose.position.x, 0.5);
-    EXPECT_EQ(changes, (std::vector<std::string>{"SET c.drawn=1", "SET c.drawn=0"}));
-    EXPECT_EQ(roomStates(world.scene()), (std::vector<RoomState>{{"c", "drawn", "0"}}));
 }
 
 }  // namespace

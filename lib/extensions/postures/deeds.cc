@@ -25,6 +25,11 @@ namespace ispace::postures {
 
 namespace {
 
+using days::addPersonVerb;
+using days::DeedMoment;
+using days::PersonDeed;
+using days::PersonVerb;
+
 constexpr double kHighestSeat = 1.1, kHighestBed = 1.5, kShortestBed = 0.6;
 constexpr double kWithin = 0.2;  // of a person that sits, from the edge of the thing
 constexpr double kSpare = 0.01;  // between a person that stands up and others

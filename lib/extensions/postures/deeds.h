@@ -6,10 +6,10 @@
 #include <string>
 
 #include "env/environment.h"
+#include "extensions/days/person_verbs.h"
 #include "extensions/postures/posture.h"
 #include "geom/point.h"
 #include "geom/pose.h"
-#include "sim/person_verbs.h"
 #include "sim/world.h"
 
 namespace ispace::postures {

@@ -20,6 +20,8 @@
 
 #include "base/error.h"
 #include "cli/common_options.h"
+#include "extensions/days/activity.h"
+#include "extensions/days/person_verbs.h"
 #include "extensions/postures/deeds.h"
 #include "extensions/postures/posture.h"
 #include "extensions/postures/postures_test.h"
@@ -30,8 +32,6 @@
 #include "sense/selection.h"
 #include "server/server_state.h"
 #include "server/session.h"
-#include "sim/activity.h"
-#include "sim/person_verbs.h"
 #include "sim/robot_sensors.h"
 #include "sim/simulation.h"
 #include "sim/world_editor.h"
@@ -42,6 +42,11 @@
 namespace ispace::postures {
 namespace {
 
+using days::addPersonVerb;
+using days::DeedMoment;
+using days::PersonDeed;
+using days::PersonVerb;
+using days::personVerbs;
 using std::chrono::milliseconds;
 
 constexpr double kHeight = 1.7;
@@ -434,7 +439,7 @@ class Home {
           simulation_(world_, {}, {Clock::Kind::Step, 1}, {}) {
         simulation_.events().want(
             {EventKind::Activity, EventKind::Unreached, EventKind::Mark, EventKind::State});
-        if (!script.empty()) simulation_.follow(readDayPlan(script, "s.txt", world_));
+        if (!script.empty()) simulation_.follow(days::readDays(script, "s.txt", world_));
     }
     void run(double duration) {
         const SimTime end = world_.time() + simSeconds(duration);
@@ -1147,7 +1152,7 @@ TEST(Deeds, AreReadWithHints) {
     const World world(scene, milliseconds(100));
     const auto finding = [&](const std::string& action) -> std::string {
         try {
-            readDayPlan("at 00:00 ann " + action + "\n", "s", world);
+            days::readDayPlan("at 00:00 ann " + action + "\n", "s", world);
         } catch (const FormatError& error) {
             return error.diagnostics().front().message;
         }

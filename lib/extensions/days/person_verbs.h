@@ -12,7 +12,7 @@
 #include "record/record.h"
 #include "sim/world.h"
 
-namespace ispace {
+namespace ispace::days {
 
 /// A person about to begin or end a deed.
 struct DeedMoment {
@@ -68,4 +68,4 @@ void addPersonVerb(PersonVerb verb);
 /// Returns all verbs, in the order in which they were added. Thread-safe.
 const std::vector<PersonVerb>& personVerbs();
 
-}  // namespace ispace
+}  // namespace ispace::days

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/engine/sim: ways of people to zones and things.
+// Private to lib/extensions/days: ways of people to zones and things.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 #include "sim/collision.h"
 #include "sim/path_finder.h"
 
-namespace ispace {
+namespace ispace::days {
 
 /// Finds short ways of a person to zones and elements of a room. It prefers ways with room to spare
 /// at both sides.
@@ -60,4 +60,4 @@ class GoalPaths {
 /// Returns the ids of the zones, elements and things of extensions to which people may go.
 std::vector<std::string> goalIds(const Scene& scene);
 
-}  // namespace ispace
+}  // namespace ispace::days

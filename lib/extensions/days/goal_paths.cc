@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/goal_paths.h"
+#include "extensions/days/goal_paths.h"
 
 #include <algorithm>
 #include <optional>
@@ -11,7 +11,7 @@
 #include "scene/placement_schemas.h"
 #include "scene/thing_kind.h"
 
-namespace ispace {
+namespace ispace::days {
 
 namespace {
 
@@ -243,4 +243,4 @@ bool GoalPaths::isAt(Point2 p, const std::string& id) const {
     });
 }
 
-}  // namespace ispace
+}  // namespace ispace::days

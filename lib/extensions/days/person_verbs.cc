@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/person_verbs.h"
+#include "extensions/days/person_verbs.h"
 
 #include <utility>
 
-namespace ispace {
+namespace ispace::days {
 
 namespace {
 
@@ -18,4 +18,4 @@ void addPersonVerb(PersonVerb verb) { verbs().push_back(std::move(verb)); }
 
 const std::vector<PersonVerb>& personVerbs() { return verbs(); }
 
-}  // namespace ispace
+}  // namespace ispace::days

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/activity.h"
+#include "extensions/days/activity.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -10,21 +11,29 @@
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "extensions/days/person_verbs.h"
 #include "record/edit.h"
 #include "record/schema.h"
 #include "scene/bodies.h"
 #include "scene/room_state.h"
 #include "scene/thing_kind.h"
-#include "sim/person_verbs.h"
 #include "sim/simulation.h"
 
-namespace ispace {
+namespace ispace::days {
 
 namespace {
 
 constexpr SimTime kDay = std::chrono::hours(24);
 constexpr SimTime kPause = std::chrono::seconds(1);  // before a blocked way is tried again
 constexpr int kMaxTries = 5;
+/// First words of lines of a plan.
+constexpr std::array<std::string_view, 2> kWords = {"at", "daily"};
+
+bool isDayLine(std::string_view line) {
+    const std::vector<Piece> words = wordsOf(line);
+    return !words.empty() &&
+           std::find(kWords.begin(), kWords.end(), words.front().text) != kWords.end();
+}
 
 /// Reads one line; a finding is thrown as a message at a column.
 class DayLineReader {
@@ -300,11 +309,6 @@ std::vector<Command> legsOf(Pose2 pose, const std::vector<Point2>& way) {
 
 }  // namespace
 
-bool isDayLine(std::string_view line) {
-    const std::vector<Piece> words = wordsOf(line);
-    return !words.empty() && (words.front().text == "at" || words.front().text == "daily");
-}
-
 DayPlan readDayPlan(std::string_view text, const std::string& file, const World& world) {
     DayPlan plan;
     Diagnostics findings;
@@ -323,6 +327,14 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
                      [](const DayLine& a, const DayLine& b) { return a.time < b.time; });
     return plan;
 }
+
+std::shared_ptr<Director> readDays(std::string_view text, const std::string& file,
+                                   const World& world) {
+    DayPlan plan = readDayPlan(text, file, world);
+    return plan.lines.empty() ? nullptr : std::make_shared<ActivityDirector>(std::move(plan));
+}
+
+void addDays() { addScriptLines({.words = {kWords.begin(), kWords.end()}, .read = readDays}); }
 
 namespace {
 
@@ -941,4 +953,4 @@ void ActivityDirector::tellUnreached(Simulation& simulation, std::size_t mover, 
                               .text = barriersOf(simulation.world(), mover, doer)});
 }
 
-}  // namespace ispace
+}  // namespace ispace::days

@@ -11,11 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "extensions/days/goal_paths.h"
 #include "geom/point.h"
 #include "geom/pose.h"
 #include "geom/predicates.h"
 #include "sim/command.h"
-#include "sim/goal_paths.h"
+#include "sim/script_lines.h"
 #include "sim/shut_doors.h"
 #include "sim/sim_time.h"
 
@@ -23,6 +24,11 @@ namespace ispace {
 
 class Simulation;
 class World;
+
+}  // namespace ispace
+
+namespace ispace::days {
+
 struct DeedMoment;
 struct PersonDeed;
 struct PersonVerb;
@@ -60,9 +66,6 @@ struct DayPlan {
     std::vector<DayLine> lines;  ///< sorted by time
 };
 
-/// Returns true if a line of a script belongs to a plan: it begins with `at` or `daily`.
-bool isDayLine(std::string_view line);
-
 /// Reads the lines of a script that belong to a plan:
 ///
 ///     at [DAY] HH:MM[:SS] PERSON [NAME:] ACTION; ACTION …
@@ -73,6 +76,11 @@ bool isDayLine(std::string_view line);
 /// people (see PersonVerb); zones and elements are named by their ids. Without a NAME an activity
 /// has the name of its first action. \throws FormatError with all findings
 DayPlan readDayPlan(std::string_view text, const std::string& file, const World& world);
+/// Reads them as a kind of script lines (see ScriptLines). Null if there are none.
+std::shared_ptr<Director> readDays(std::string_view text, const std::string& file,
+                                   const World& world);
+/// Adds these lines to those that scripts may have. Called once, before the first is read.
+void addDays();
 
 /// Makes people follow their days: each does the activities of a plan one after another, each at
 /// its time or once those before it are done. A person on the way finds it round walls, elements
@@ -87,15 +95,16 @@ DayPlan readDayPlan(std::string_view text, const std::string& file, const World&
 /// Searches for ways are limited in each step, by the cells that they look at: the others of a
 /// crowd that sets out at once stand until it is their turn, which they get in the order in which
 /// they wanted to go. So do those of a crowd that give up, and look for the doors in their way.
-class ActivityDirector {
+class ActivityDirector final : public Director {
   public:
     explicit ActivityDirector(DayPlan plan);
     ActivityDirector(const ActivityDirector&) = delete;
     ActivityDirector& operator=(const ActivityDirector&) = delete;
-    /// Starts and ends actions, and raises their events. Call it after each step.
-    void stepped(Simulation& simulation);
-    /// Returns true for a door that people have opened, and that is shut behind them.
-    [[nodiscard]] bool hasOpened(const std::string& door) const { return opened_.contains(door); }
+    /// Starts and ends actions, and raises their events.
+    void stepped(Simulation& simulation) override;
+    [[nodiscard]] bool hasOpened(const std::string& door) const override {
+        return opened_.contains(door);
+    }
 
   private:
     struct Doer {
@@ -186,4 +195,4 @@ class ActivityDirector {
     std::map<std::string, OpenedDoor> opened_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::days

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sim/activity.h"
+#include "extensions/days/activity.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,11 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "sim/goal_paths.h"
+#include "extensions/days/goal_paths.h"
 #include "sim/simulation.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::days {
 namespace {
 
 using std::chrono::hours;
@@ -65,7 +65,16 @@ TEST(DayPlan, ReadsTimesNamesAndActions) {
     EXPECT_EQ(plan.lines[1].actions[1].lasts, minutes(3));
     EXPECT_EQ(plan.lines[2].time, hours(30) + seconds(30));
     EXPECT_EQ(plan.lines[2].name, "opens_d");
-    EXPECT_EQ(readScript("at 00:00 a goes left\n0 a FORWARD 1\n", "s.txt", world).size(), 1U);
+}
+
+TEST(DayPlan, IsAPartOfAScript) {
+    addDays();
+    const Scene room = home();
+    const World world(room, seconds(1));
+    const std::string both = "at 00:00 a goes left\n0 a FORWARD 1\n";
+    EXPECT_EQ(readScript(both, "s.txt", world).size(), 1U);
+    EXPECT_EQ(readDirectors(both, "s.txt", world).size(), 1U);
+    EXPECT_TRUE(readDirectors("0 a FORWARD 1\n", "s.txt", world).empty());
 }
 
 TEST(DayPlan, NamesAreWords) {
@@ -142,7 +151,7 @@ struct Lived {
                    SimTime step = milliseconds(500))
         : room(scene), world(room, step), simulation(world, {}, {Clock::Kind::Step, 1}, {}) {
         simulation.events().want({EventKind::Activity});
-        simulation.follow(readDayPlan(script, "s.txt", world));
+        if (auto days = readDays(script, "s.txt", world)) simulation.follow(std::move(days));
     }
     void run(int steps) {
         simulation.allow(steps);
@@ -505,4 +514,4 @@ TEST(ActivityDirector, ACrowdGivesUpInTurns) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::days
