@@ -10,7 +10,6 @@
 #include "arrange/search/set_cover.h"
 #include "base/message.h"
 #include "base/number.h"
-#include "coverage/robustness.h"
 #include "report/coverage_report.h"
 #include "report/curve_chart.h"
 
@@ -64,9 +63,7 @@ std::string meanText(const RobustChoice& robust, const RobustValues& values) {
     const bool is_random =
         robust.of == RobustChoice::Of::Crowd || robust.of == RobustChoice::Of::Mounting;
     if (!is_random || values.shares.size() < 2) return text;
-    FigureSpread spread;
-    spread.values = values.shares;
-    return text + " with a standard error of " + percentText(spread.standardError());
+    return text + " with a standard error of " + percentText(values.standardError());
 }
 
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arrange/case_room.h"
 
+#include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "arrange/objective.h"
@@ -44,6 +46,15 @@ std::vector<Crowd> crowdsIn(const Scene& scene, std::size_t people, std::uint64_
     for (std::size_t k = 0; people > 0 && k < crowds.size(); ++k)
         crowds[k] = floor.draw(people, {.seed = seed, .frame = k});
     return crowds;
+}
+
+double RobustValues::standardError() const {
+    if (shares.size() < 2) return 0;
+    const auto count = static_cast<double>(shares.size());
+    const double middle = std::accumulate(shares.begin(), shares.end(), 0.0) / count;
+    double squares = 0;
+    for (const double share : shares) squares += (share - middle) * (share - middle);
+    return std::sqrt(squares / (count - 1) / count);
 }
 
 }  // namespace ispace

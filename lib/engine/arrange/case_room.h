@@ -9,7 +9,7 @@
 
 #include "arrange/arrange.h"
 #include "base/cell_set.h"
-#include "coverage/robustness.h"
+#include "coverage/mounting.h"
 #include "coverage/target.h"
 #include "coverage/visible_area.h"
 #include "scene/scene.h"

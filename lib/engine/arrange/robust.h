@@ -10,7 +10,7 @@
 
 #include "arrange/site.h"
 #include "coverage/crowd.h"
-#include "coverage/robustness.h"
+#include "coverage/mounting.h"
 #include "scene/scene.h"
 
 namespace ispace {
@@ -56,6 +56,9 @@ struct RobustValues {
     /// With failures: the sensors of the worst case.
     std::vector<std::string> failed = {};
     double worst = 0, mean = 0;
+
+    /// Returns the standard error of the mean of independent cases; 0 for a single one.
+    [[nodiscard]] double standardError() const;
 };
 
 }  // namespace ispace

@@ -108,33 +108,6 @@ TEST(Robust, NoFailureIsThePlainSearch) {
     }
 }
 
-TEST(Robust, ValueOfFailuresIsThatOfCoverage) {
-    const Document layout = layoutFrom("laser id=l9 at=3,2,0.15 heading=180 range=4 fov=180\n");
-    const Scene scene = roomScene(kTestRoom, &layout);
-    const auto groups = groupsOf(scene, {"laser,range=4,fov=200:3"});
-    for (const int failures : {1, 2}) {
-        ArrangeOptions options = coarse();
-        options.robust.of = RobustChoice::Of::Failures;
-        options.robust.failures = failures;
-        const Arrangement found = arranged(scene, groups, options);
-        const Scene whole = withPlaced(scene, groups, found.sensors);
-        RayScenes worlds(whole.environment);
-        const Coverage coverage = measureCoverage(whole, worlds, {.exact = false});
-        const auto losses = worstFailures(whole, coverage, failures, {});
-        EXPECT_NEAR(*found.value, losses[0].worst, 1e-9);
-        EXPECT_NEAR(found.candidate_value, losses[0].worst, 1e-9);
-        EXPECT_EQ(found.robust->failed.size(), static_cast<std::size_t>(failures));
-        EXPECT_GE(found.bound, losses[0].worst);
-        EXPECT_GE(found.robust->mean, found.robust->worst);
-        // More than the plain layout keeps.
-        ArrangeOptions plain = coarse();
-        const Scene other = withPlaced(scene, groups, arranged(scene, groups, plain).sensors);
-        RayScenes other_worlds(other.environment);
-        const Coverage of_plain = measureCoverage(other, other_worlds, {.exact = false});
-        EXPECT_GE(losses[0].worst, worstFailures(other, of_plain, failures, {})[0].worst);
-    }
-}
-
 TEST(Robust, AsManyFailuresAsSensorsAreRefused) {
     const Scene scene = roomScene();
     ArrangeOptions options = coarse();
@@ -215,6 +188,13 @@ TEST(Robust, NobodyIsThePlainSearch) {
     options.robust = {.of = RobustChoice::Of::Crowd, .is_worst = false};
     const Arrangement robust = arranged(scene, groups, options);
     EXPECT_NEAR(robust.candidate_value, plain.candidate_value, 1e-9);
+}
+
+TEST(Robust, MeanHasItsStandardError) {
+    RobustValues values;
+    EXPECT_EQ(values.standardError(), 0);
+    values.shares = {0.2, 0.4};
+    EXPECT_NEAR(values.standardError(), 0.1, 1e-15);  // sqrt(2 * 0.1^2 / 1 / 2)
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "coverage/robustness.h"
+#include "coverage/mounting.h"
+#include "extensions/robustness/failures.h"
+#include "extensions/robustness/figure_samples.h"
 #include "report/report_section.h"
 
 namespace ispace::robustness {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much the coverage of a building suffers: as coverage/robustness.h and coverage/crowd.h have
-// it of a room, over the floor of all storeys.
+// How much the coverage of a building suffers: as figure_samples.h and failures.h have it of
+// a room, over the floor of all storeys.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@
 
 #include "coverage/crowd.h"
 #include "coverage/requirement.h"
-#include "coverage/robustness.h"
+#include "extensions/robustness/failures.h"
+#include "extensions/robustness/figure_samples.h"
 #include "site/site_coverage.h"
 
 namespace ispace::robustness {

@@ -10,8 +10,6 @@
 #include "record/text.h"
 #include "scene/bodies.h"
 #include "scene/placement_schemas.h"
-#include "scene/run/run_reader.h"
-#include "trace/ray_world.h"
 
 namespace ispace {
 
@@ -39,13 +37,6 @@ Scene withCrowd(const Scene& scene, const Crowd& crowd) {
     filled.environment = Environment(filled.records, filled.ids, scene.environment);
     filled.digest_of_other = scene.digest();
     return filled;
-}
-
-Crowd crowdOf(const Scene& scene) {
-    Crowd crowd;
-    for (const PlacedPerson& person : scene.people)
-        crowd.push_back({person.pose.position, person.height});
-    return crowd;
 }
 
 CrowdFloor::CrowdFloor(const Scene& scene)
@@ -89,48 +80,6 @@ Crowd CrowdFloor::draw(std::size_t count, RandomKey key) const {
                              std::to_string(before) + " fit");
     }
     return crowd;
-}
-
-std::vector<Crowd> crowdsOfRun(const std::string& folder, const Scene& scene, std::size_t most) {
-    std::size_t moments = 0;
-    RunReader counted(folder);
-    while (counted.next()) ++moments;
-    if (moments == 0) throw FormatError({counted.name(), 0, 0, "the record has no moment"});
-    const auto height_of = [&scene](const std::string& id) {
-        for (const PlacedPerson& person : scene.people)
-            if (person.id == id) return person.height;
-        return kUsualHeight;
-    };
-    const std::size_t count = std::min(most, moments);
-    std::vector<Crowd> crowds;
-    RunReader reader(folder);
-    for (std::size_t moment = 0; reader.next() && crowds.size() < count; ++moment) {
-        const std::size_t wanted = count == 1 ? 0 : crowds.size() * (moments - 1) / (count - 1);
-        if (moment < wanted) continue;
-        Crowd& crowd = crowds.emplace_back();
-        for (const RunState& state : reader.states())
-            if (const RunMember& member = reader.members()[state.member]; member.is_person)
-                crowd.push_back({state.pose.position, height_of(member.id)});
-    }
-    return crowds;
-}
-
-SampledFigures measureCrowds(const Scene& scene, const CoverageReport& planned,
-                             const CoverageOptions& measure, std::span<const Crowd> crowds,
-                             std::span<const Requirement> requirements, Progress& progress) {
-    CoverageOptions options = measure;
-    options.keep_depths = false;
-    options.parallax.reset();
-    progress.begin("crowds", static_cast<std::int64_t>(crowds.size()));
-    const auto measured = [&](int sample) {
-        const Scene filled = withCrowd(scene, crowds[static_cast<std::size_t>(sample)]);
-        RayScenes worlds(filled.environment);
-        return measureCoverage(filled, worlds, options);
-    };
-    SampledFigures sampled =
-        sampleFigures(planned, requirements, static_cast<int>(crowds.size()), measured, progress);
-    progress.end();
-    return sampled;
 }
 
 }  // namespace ispace

@@ -74,11 +74,6 @@ void addExactMetrics(Coverage& coverage, const Environment& environment, FarHole
 void addExactShares(Coverage& coverage, const Environment& environment, FarHoles& holes,
                     const std::vector<Zone>& zones, bool keep_depths, std::size_t most_crossings);
 
-/// Returns the figures whose robustness is reported: coverage, free coverage, that of each zone,
-/// and those of the requirements, each once, as requirements of 0.
-std::vector<Requirement> figuresOf(const CoverageReport& report,
-                                   std::span<const Requirement> requirements);
-
 /// Returns part / whole, clamped to [0, 1] against rounding; 0 if `whole` is 0
 double shareOf(double part, double whole);
 

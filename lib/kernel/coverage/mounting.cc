@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <utility>
-#include <variant>
+#include "coverage/mounting.h"
 
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/error.h"
 #include "base/number.h"
-#include "coverage/metrics.h"
-#include "coverage/robustness.h"
 #include "env/level.h"
 #include "geom/predicates.h"
 #include "record/schema.h"
@@ -85,88 +85,6 @@ Pose3 mountedPose(const Environment& environment, const Sensor& sensor,
         break;
     }
     return pose;
-}
-
-double FigureSpread::quantile(double share) const {
-    const auto count = static_cast<double>(values.size());
-    const double rank = std::clamp(std::ceil(share * count - 1e-9), 1.0, count);
-    return values[static_cast<std::size_t>(rank) - 1];
-}
-
-double FigureSpread::mean() const {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double FigureSpread::standardError() const {
-    const auto count = static_cast<double>(values.size());
-    if (values.size() < 2) return 0;
-    double squares = 0;
-    for (const double value : values) squares += (value - mean()) * (value - mean());
-    return std::sqrt(squares / (count - 1) / count);
-}
-
-std::vector<Requirement> figuresOf(const CoverageReport& report,
-                                   std::span<const Requirement> requirements) {
-    std::vector<Requirement> figures = {{Requirement::Of::Indoor}, {Requirement::Of::Free}};
-    for (const ZoneMetrics& zone : report.zones)
-        figures.push_back({Requirement::Of::Zone, zone.id});
-    for (Requirement requirement : requirements) {
-        requirement.share = 0;
-        if (std::find(figures.begin(), figures.end(), requirement) == figures.end())
-            figures.push_back(requirement);
-    }
-    return figures;
-}
-
-SampledFigures sampleFigures(const CoverageReport& planned,
-                             std::span<const Requirement> requirements, int samples,
-                             const std::function<Coverage(int)>& measured, Progress& progress) {
-    SampledFigures sampled{0, {}, std::vector<int>(requirements.size())};
-    for (const Requirement& figure : figuresOf(planned, requirements)) {
-        RequiredFigure known = figureOf(figure, planned);
-        if (!known.share.exact && !known.share.grid) continue;
-        sampled.figures.push_back({figure, std::move(known.name),
-                                   known.share.exact ? *known.share.exact : *known.share.grid,
-                                   known.share.exact.has_value()});
-    }
-    for (int k = 0; k < samples && (k == 0 || !progress.stopped()); ++k) {
-        const Coverage now = measured(k);
-        for (FigureSpread& figure : sampled.figures) {
-            const Metric share = figureOf(figure.figure, now.report).share;
-            // The overlay of a sample may have too many crossings; cells are left, then.
-            figure.is_exact &= share.exact.has_value();
-            figure.values.push_back(share.exact.value_or(share.grid.value_or(0)));
-        }
-        for (std::size_t i = 0; i < requirements.size(); ++i)
-            sampled.met[i] += checkRequirement(requirements[i], now).is_met ? 1 : 0;
-        ++sampled.samples;
-        progress.advance(1);
-    }
-    for (FigureSpread& figure : sampled.figures)
-        std::sort(figure.values.begin(), figure.values.end());
-    return sampled;
-}
-
-SampledFigures perturbMounting(const Scene& scene, const CoverageReport& planned,
-                               const CoverageOptions& measure, const MountingTolerance& tolerance,
-                               int mountings, std::uint64_t seed,
-                               std::span<const Requirement> requirements, Progress& progress) {
-    CoverageOptions options = measure;
-    options.keep_depths = false;
-    options.parallax.reset();
-    RayScenes worlds(scene.environment);
-    Scene mounted = scene;
-    progress.begin("mountings", mountings);
-    const auto measured = [&](int mounting) {
-        const RandomKey key{.seed = seed, .frame = static_cast<std::uint64_t>(mounting)};
-        for (std::size_t i = 0; i < scene.sensors.size(); ++i)
-            mounted.sensors[i].pose =
-                mountedPose(scene.environment, scene.sensors[i], tolerance, key);
-        return measureCoverage(mounted, worlds, options);
-    };
-    SampledFigures sampled = sampleFigures(planned, requirements, mountings, measured, progress);
-    progress.end();
-    return sampled;
 }
 
 }  // namespace ispace

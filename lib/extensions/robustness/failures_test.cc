@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/robustness.h"
+#include "extensions/robustness/failures.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "env/level.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::robustness {
 namespace {
 
 const std::string kMixedRoom =
@@ -118,84 +117,5 @@ TEST(Failures, RefuseTooManySets) {
     EXPECT_EQ(worstFailures(scene, coverage, 1, {})[0].sensors.size(), 1U);
 }
 
-TEST(Mounting, ParsesTolerances) {
-    EXPECT_NEAR(parseTolerance("5cm,3deg").distance, 0.05, 1e-15);
-    EXPECT_NEAR(parseTolerance("0.1,3").angle.degrees(), 3, 1e-12);
-    for (const char* text : {"", "5cm", "5cm,", ",3", "-1cm,3", "2,3", "1cm,181", "5cm,3,1"})
-        EXPECT_ANY_THROW(parseTolerance(text)) << text;
-}
-
-TEST(Mounting, StaysWithinTolerances) {
-    const Scene scene = sceneOf(kMixedRoom);
-    const MountingTolerance tolerance{0.3, Angle::degrees(10)};
-    double farthest = 0, widest = 0;
-    for (std::uint64_t k = 0; k < 300; ++k)
-        for (const Sensor& sensor : scene.sensors) {
-            const Pose3 pose =
-                mountedPose(scene.environment, sensor, tolerance, {.seed = 4, .frame = k});
-            const double moved = distance(pose.position.onFloor(), sensor.pose.position.onFloor());
-            const double turned = std::abs(wrapped(pose.heading - sensor.pose.heading).degrees());
-            const double tilted = std::abs((pose.tilt - sensor.pose.tilt).degrees());
-            EXPECT_LE(moved, 0.3 + 1e-9);
-            EXPECT_LE(turned, 10 + 1e-9);
-            EXPECT_LE(tilted, sensor.is<Camera>() ? 10 + 1e-9 : 0);
-            EXPECT_TRUE(scene.environment.level(pose.position.z)->isFree(pose.position.onFloor()))
-                << sensor.id;
-            farthest = std::max(farthest, moved);
-            widest = std::max(widest, turned);
-        }
-    EXPECT_GT(farthest, 0.28);
-    EXPECT_GT(widest, 9.8);
-}
-
-TEST(Mounting, CrossesNoWall) {
-    // The wall at x = -1 is nearer than the tolerance.
-    const Scene scene = sceneOf(kMixedRoom + "laser id=near at=-0.95,-2 fov=180\n");
-    for (std::uint64_t k = 0; k < 200; ++k)
-        EXPECT_GT(mountedPose(scene.environment, scene.sensors.back(), {0.4, {}}, {.frame = k})
-                      .position.x,
-                  -1);
-}
-
-TEST(Mounting, SpreadsFigures) {
-    const Scene scene = sceneOf(kMixedRoom);
-    const CoverageOptions options = cellsOfTest();
-    const Coverage coverage = measuredBy(scene, options);
-    const double planned = *coverage.report.coverage.exact;
-    const std::vector<Requirement> requirements = {{Requirement::Of::Indoor, "", planned},
-                                                   parseRequirement("0%")};
-    SilentProgress silent;
-    const SampledFigures spread = perturbMounting(
-        scene, coverage.report, options, {0.1, Angle::degrees(5)}, 20, 7, requirements, silent);
-    EXPECT_EQ(spread.samples, 20);
-    ASSERT_EQ(spread.figures.size(), 4U);  // the last one of the zone outside is 0
-    const FigureSpread& figure = spread.figures[0];
-    EXPECT_EQ(figure.planned, planned);
-    ASSERT_EQ(figure.values.size(), 20U);
-    EXPECT_TRUE(std::is_sorted(figure.values.begin(), figure.values.end()));
-    EXPECT_LT(figure.quantile(0), figure.quantile(1));
-    EXPECT_EQ(figure.quantile(0.05), figure.values[0]);
-    EXPECT_EQ(figure.quantile(0.5), figure.values[9]);
-    EXPECT_EQ(figure.quantile(0.95), figure.values[18]);
-    EXPECT_EQ(spread.met[1], 20);
-    EXPECT_LT(spread.met[0], 20);
-    // Mounting k is the same for any number of mountings.
-    const SampledFigures fewer = perturbMounting(
-        scene, coverage.report, options, {0.1, Angle::degrees(5)}, 3, 7, requirements, silent);
-    for (const double value : fewer.figures[0].values)
-        EXPECT_TRUE(std::binary_search(figure.values.begin(), figure.values.end(), value));
-}
-
-TEST(Mounting, WithoutToleranceAllIsAsPlanned) {
-    const Scene scene = sceneOf(kMixedRoom + kReceivers);
-    const CoverageOptions options = cellsOfTest();
-    const Coverage coverage = measuredBy(scene, options);
-    SilentProgress silent;
-    for (const FigureSpread& figure :
-         perturbMounting(scene, coverage.report, options, {}, 2, 0, {}, silent).figures)
-        for (const double value : figure.values)
-            EXPECT_NEAR(value, figure.planned, 1e-9) << figure.name;
-}
-
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::robustness

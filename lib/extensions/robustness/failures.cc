@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "extensions/robustness/failures.h"
+
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -7,11 +9,11 @@
 #include <utility>
 
 #include "coverage/metrics.h"
-#include "coverage/robustness.h"
 #include "env/level.h"
+#include "extensions/robustness/figure_samples.h"
 #include "scene/sensor/ultrasound.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 namespace {
 
@@ -362,4 +364,4 @@ std::vector<FigureLoss> worstFailures(std::span<const FailingRoom> rooms,
     return losses;
 }
 
-}  // namespace ispace
+}  // namespace ispace::robustness
