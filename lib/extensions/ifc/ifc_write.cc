@@ -341,16 +341,21 @@ class RoomWriter {
 
     /// Adds the rooms, minus the walls in them, and the zones, as parts of the rooms around them.
     void addSpaces(const WholeWalls& walls) {
-        const std::vector<Region> rooms =
-            difference(scene_.environment.indoor(), walls.footprints());
+        const std::vector<Polygon> footprints = walls.footprints();
+        const std::vector<Region> rooms = difference(scene_.environment.indoor(), footprints);
         std::vector<std::vector<std::string>> zones(rooms.size());
         for (const Element& element : elements_) {
             if (element.record.keyword() != "zone") continue;
             const Region zone{zoneOutline(element.record), {}};
-            const auto room = std::find_if(rooms.begin(), rooms.end(),
-                                           [inside = interiorPoint(zone)](const Region& each) {
-                                               return each.locate(inside) != Side::Outside;
-                                           });
+            // The room around the zone's floor: its middle may lie in a wall.
+            const std::vector<Region> floors = difference(zone, footprints);
+            const auto largest = std::max_element(
+                floors.begin(), floors.end(),
+                [](const Region& a, const Region& b) { return a.area() < b.area(); });
+            const Point2 inside = interiorPoint(largest == floors.end() ? zone : *largest);
+            const auto room = std::find_if(
+                rooms.begin(), rooms.end(),
+                [inside](const Region& each) { return each.locate(inside) != Side::Outside; });
             auto& parts = room == rooms.end()
                               ? spaces_
                               : zones[static_cast<std::size_t>(room - rooms.begin())];

@@ -70,13 +70,14 @@ class StoreyImport {
     /// A space and its area.
     struct Room {
         const BuildingSpace* space;
-        std::vector<Region> area;  ///< the largest part first
+        std::vector<Region> area;           ///< the largest part first
+        std::optional<Point2> inside = {};  ///< on its floor; empty: walls cover all of it
     };
 
     void takeSpaces() {
         for (const BuildingSpace& space : building_.spaces) {
             if (space.storey != storey_) continue;
-            Room room{&space, areaOf(space.outline)};
+            Room room{&space, areaOf(space.outline), {}};
             std::stable_sort(room.area.begin(), room.area.end(),
                              [](const Region& a, const Region& b) { return a.area() > b.area(); });
             if (!room.area.empty()) spaces_.push_back(std::move(room));
@@ -87,12 +88,43 @@ class StoreyImport {
                              (building_.unread.empty() ? "" : "; " + unreadText(building_)));
     }
 
+    /// Finds a point of each space on its floor, in no wall and on no line: spaces are often drawn
+    /// across columns, partitions and cores.
+    void findFloors(std::span<const Segment2> lines, const PlanFaces& faces) {
+        constexpr double kMostOf = 0.5;  // of a space
+        const NearSegments search(lines, work_);
+        for (Room& room : spaces_) {
+            const Region& area = room.area.front();
+            const Point2 middle = interiorPoint(area);
+            const auto near = search.near(middle, kOnLine);
+            const bool is_clear =
+                !isInWall(middle) && std::none_of(near.begin(), near.end(), [&](std::size_t i) {
+                    return distance(middle, lines[i]) <= kOnLine;
+                });
+            const PlanFaces::Group* const group = is_clear ? faces.groupAt(middle) : nullptr;
+            if (is_clear) room.inside = middle;
+            if (is_clear && (group == nullptr || group->area >= kMostOf * area.area())) continue;
+            const std::vector<Region> floor = floorOf({&area, 1}, walls_, work_);
+            if (floor.empty()) continue;
+            std::vector<Segment2> beside;
+            for (const std::size_t i : search.near(bounds(floor.front().outline), 0))
+                beside.push_back(lines[i]);
+            room.inside = clearPoint(floor.front(), beside);
+        }
+    }
+
+    [[nodiscard]] bool isInWall(Point2 p) const {
+        return std::any_of(walls_.solids.begin(), walls_.solids.end(),
+                           [p](const Region& solid) { return solid.locate(p) != Side::Outside; });
+    }
+
     /// Adds the outlines of spaces that no walls enclose as walls, e.g. under a roof.
     void encloseSpaces(std::vector<Segment2>& all, std::span<const Segment2> doors) {
         const PlanFaces faces(all, work_, doors);
+        findFloors(all, faces);
         std::size_t open = 0;
         for (const Room& room : spaces_) {
-            if (faces.groupAt(interiorPoint(room.area.front())) != nullptr) continue;
+            if (!room.inside || faces.groupAt(*room.inside) != nullptr) continue;
             ++open;
             for (const Region& part : room.area)
                 part.forEachEdge([&](const Segment2& edge) {
@@ -220,12 +252,9 @@ class StoreyImport {
         if (chosen.inside.empty() && chosen.known_inside.empty() &&
             chosen.rooms == RoomChoice::Largest)
             for (const Room& room : spaces_)
-                chosen.inside.push_back(interiorPoint(room.area.front()));
+                if (room.inside) chosen.inside.push_back(*room.inside);
         PlanWalls plan{all, doors, {}, {}, {}};
-        plan.is_floor = [this](Point2 p) {
-            return std::none_of(walls_.solids.begin(), walls_.solids.end(),
-                                [p](const Region& r) { return r.locate(p) != Side::Outside; });
-        };
+        plan.is_floor = [this](Point2 p) { return !isInWall(p); };
         rooms_ = chooseRooms(plan, chosen, work_, out_);
         if (rooms_.regions.empty())
             out_.warn(
@@ -348,9 +377,11 @@ class StoreyImport {
     }
 
     void writeSpaces() {
+        std::size_t covered = 0;
         for (const Room& room : spaces_) {
+            if (!room.inside) ++covered;
             const BuildingSpace& space = *room.space;
-            if (!isKept(interiorPoint(room.area.front()))) continue;
+            if (!room.inside || !isKept(*room.inside)) continue;
             for (const Region& part : room.area) {
                 const std::string id = out_.freeId(space.number + '-' + space.name, "space");
                 Record& record = out_.zone(id, part);
@@ -359,6 +390,9 @@ class StoreyImport {
             }
             compareAreas(room);
         }
+        if (covered > 0)
+            out_.warn("storey " + storeyWord(building_, storey_) + ": " +
+                      countText(covered, "space") + " that walls cover left out");
     }
 
     void compareAreas(const Room& room) {

@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "base/error.h"
 #include "geom/arrangement.h"
 #include "geom/overlay/overlay.h"
 #include "geom/predicates.h"
@@ -408,6 +409,33 @@ void addPieces(StoreyWalls& walls, std::span<const Polygon> pieces) {
     for (const Region& solid : walls.solids) layers.push_back(layerOf(curvesOf(solid)));
     for (const Polygon& piece : pieces) layers.push_back(layerOf({&piece, 1}));
     unite(walls, layers);
+}
+
+std::vector<Region> floorOf(std::span<const Region> area, const StoreyWalls& walls, Budget& work) {
+    std::size_t corners = 0;
+    std::vector<Curve> curves, solids;
+    const auto add = [&corners](const Region& region, std::vector<Curve>& to) {
+        for (const Polygon& curve : curvesOf(region)) {
+            corners += curve.size();
+            to.push_back(curveOf(curve));
+        }
+    };
+    Box2 box;
+    for (const Region& part : area) {
+        add(part, curves);
+        for (const Point2 p : part.outline) box.add(p);
+    }
+    for (const Region& wall : walls.solids)
+        if (bounds(wall.outline).overlaps(box)) add(wall, solids);
+    if (!work.take(corners))
+        throw FormatError(Diagnostic{"", 0, 0, "spaces across walls make " + work.excess()});
+    const std::vector<Layer> layers{{.curves = std::move(curves)},
+                                    {std::move(solids), false, 0, 1}};
+    std::vector<Region> parts = Overlay(layers).regions(
+        [](const LayerLabel& label) { return label.count > 0 && label.marks == 0; });
+    std::stable_sort(parts.begin(), parts.end(),
+                     [](const Region& a, const Region& b) { return a.area() > b.area(); });
+    return parts;
 }
 
 std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {

@@ -45,6 +45,10 @@ void carve(StoreyWalls& walls, std::span<const BuildingBox> holes);
 /// Merges further pieces into the walls.
 void addPieces(StoreyWalls& walls, std::span<const Polygon> pieces);
 
+/// Returns the parts of an area that no wall covers, the largest first.
+/// \throws FormatError (without a file) if the corners of all exceed the work that is left
+std::vector<Region> floorOf(std::span<const Region> area, const StoreyWalls& walls, Budget& work);
+
 /// Finds the faces of walls that openings go through.
 class WallFaces {
   public:

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rooms that are written as IFC and read again.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "extensions/ifc/ifc.h"
+#include "record/text.h"
+#include "scene/placement_schemas.h"
+#include "support/test_import.h"
+
+namespace ispace::ifc {
+
+namespace {
+
+Document readBack(const std::string& records, const ImportOptions& options = {}) {
+    const Document document = readRecordText("#env 1\n" + records, "room", sceneSchemas());
+    const std::string ifc =
+        writeIfc(makeScene(document, nullptr, DeviceCatalogue()), "room").product;
+    return readIfc(ifc, "room.ifc", options, sceneSchemas());
+}
+
+double areaOfBack(const std::string& records) {
+    return environmentOf(readBack(records)).indoor().area();
+}
+
+// Walls of the room itself come back 5 mm thick.
+constexpr double kRoom = (8 - 0.005) * (6 - 0.005);
+
+TEST(IfcRoundTrip, RoomsAroundAWallInTheirMiddle) {
+    const std::string room = "ispace size=8,6\n";
+    EXPECT_NEAR(areaOfBack(room + "wall from=-1,0 to=1,0 thickness=0.2\n"), kRoom - 0.4, 1e-3);
+    EXPECT_NEAR(areaOfBack(room + "wall from=-1,0 to=4,0 thickness=0.2\n"), kRoom - 1, 1e-3);
+    const std::string core =
+        "wall from=-1,-1 to=1,-1 thickness=0.2\nwall from=1,-1 to=1,1 thickness=0.2\n"
+        "wall from=1,1 to=-1,1 thickness=0.2\nwall from=-1,1 to=-1,-1 thickness=0.2\n";
+    EXPECT_NEAR(areaOfBack(room + core + "inside at=3,2\n"), kRoom - 2.2 * 2.2, 1e-3);
+}
+
+TEST(IfcRoundTrip, ZonesAroundAWallInTheirMiddle) {
+    const Document back =
+        readBack("ispace size=8,6\nwall from=-1,0 to=1,0 thickness=0.2\nzone id=z size=4,4\n");
+    EXPECT_NEAR(environmentOf(back).indoor().area(), kRoom - 0.4, 1e-3);
+    EXPECT_EQ(countOf(back, "zone"), 2U);
+    EXPECT_EQ(countOf(back, "inside"), 1U);
+}
+
+}  // namespace
+
+}  // namespace ispace::ifc
