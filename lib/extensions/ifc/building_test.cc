@@ -341,6 +341,9 @@ TEST(Building, PackedIsNotTrusted) {
     wrong = again;
     wrong.openings[0].kind = static_cast<BuildingOpening::Kind>(9);
     EXPECT_THROW(unpackedBuilding(packedBuilding(wrong)), std::runtime_error);
+    wrong = again;
+    wrong.openings[0].pane = static_cast<BuildingOpening::Pane>(9);
+    EXPECT_THROW(unpackedBuilding(packedBuilding(wrong)), std::runtime_error);
     // Counts that would take all memory.
     for (std::size_t at = 0; at + 8 <= good.size(); at += 3) {
         std::string bytes = good;

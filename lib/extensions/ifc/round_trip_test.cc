@@ -46,6 +46,22 @@ TEST(IfcRoundTrip, ZonesAroundAWallInTheirMiddle) {
     EXPECT_EQ(countOf(back, "inside"), 1U);
 }
 
+TEST(IfcRoundTrip, WindowsKeepTheirGlass) {
+    const auto glass_of = [](const std::string& window) {
+        for (const Record& record :
+             readBack("ispace id=r size=8,6\nwall id=m from=0,-3 to=0,3\nwindow wall=m offset=3 "
+                      "size=2 " +
+                      window + "\ninside at=-1,0\ninside at=1,0\n")
+                 .records)
+            if (record.keyword() == "window") return record.text("glass");
+        return std::string("no window");
+    };
+    EXPECT_EQ(glass_of("glass=clear"), "clear");
+    EXPECT_EQ(glass_of("glass=opaque"), "opaque");
+    EXPECT_EQ(glass_of("blind=yes"), "opaque");
+    EXPECT_EQ(glass_of("open=yes"), "none");
+}
+
 }  // namespace
 
 }  // namespace ispace::ifc

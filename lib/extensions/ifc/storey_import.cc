@@ -367,8 +367,13 @@ class StoreyImport {
                 record.set("open", true);
             else
                 record.set("sill", wholeMicrometres(sill));
-            if (kindOf(opening) == BuildingOpening::Kind::Hole && !is_door)
+            if (is_door) continue;
+            const BuildingOpening::Pane pane = filling(opening).pane;
+            if (kindOf(opening) == BuildingOpening::Kind::Hole ||
+                pane == BuildingOpening::Pane::Open)
                 record.set("glass", std::string("none"));
+            else if (pane == BuildingOpening::Pane::Opaque)
+                record.set("glass", std::string("opaque"));
         }
         if (not_in_walls_ > 0)
             out_.note(countText(not_in_walls_, "opening") + " in no straight wall " +

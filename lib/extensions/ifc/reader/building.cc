@@ -133,7 +133,8 @@ void pack(Archive& archive, BuildingWall& wall) {
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingOpening& opening) {
-    archive(opening.kind, opening.has_hole, opening.storey, opening.name, opening.box);
+    archive(opening.kind, opening.pane, opening.has_hole, opening.storey, opening.name,
+            opening.box);
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingThing& thing) {
@@ -168,6 +169,7 @@ Building unpackedBuilding(std::string_view bytes) {
         Unpacker::check(wall.storey < building.storeys.size());
     for (const BuildingOpening& opening : building.openings)
         Unpacker::check(opening.kind <= BuildingOpening::Kind::Hole &&
+                        opening.pane <= BuildingOpening::Pane::Open &&
                         opening.storey < building.storeys.size());
     for (const BuildingUnread& part : building.unread)
         Unpacker::check(part.storey < building.storeys.size() ||

@@ -71,7 +71,10 @@ struct BuildingWall {
 /// A hole in a wall, with or without a door or window, or one of these without a hole.
 struct BuildingOpening {
     enum class Kind : std::uint8_t { Door, Window, Hole };
+    /// What an ObjectType says of a window that envc has written.
+    enum class Pane : std::uint8_t { Clear, Opaque, Open };
     Kind kind = Kind::Door;
+    Pane pane = Pane::Clear;   ///< of windows
     bool has_hole = false;     ///< false: the box is that of the door or window
     std::uint64_t storey = 0;  ///< that the file assigns it to, else the one at its height
     std::string name;          ///< of the door or window

@@ -317,7 +317,11 @@ class BuildingReader {
         opening.kind = filler == 0 ? BuildingOpening::Kind::Hole : kindOf(file_.typeOf(filler));
         opening.has_hole = id != filler;
         opening.storey = storeyOf(id).value_or(storeyAtHeight(box->bottom));
-        if (filler != 0) opening.name = file_.read(filler)[2].text();
+        if (filler != 0) {
+            const StepInstance instance = file_.read(filler);
+            opening.name = instance[2].text();
+            opening.pane = paneOf(instance[4].text());
+        }
         opening.box = *box;
         out_.openings.push_back(std::move(opening));
         return true;
@@ -353,6 +357,12 @@ class BuildingReader {
     static BuildingOpening::Kind kindOf(std::string_view type) {
         return type.starts_with("IFCDOOR") ? BuildingOpening::Kind::Door
                                            : BuildingOpening::Kind::Window;
+    }
+
+    /// \param object_type as writeIfc() writes it
+    static BuildingOpening::Pane paneOf(std::string_view object_type) {
+        if (object_type == "opaque pane") return BuildingOpening::Pane::Opaque;
+        return object_type == "open" ? BuildingOpening::Pane::Open : BuildingOpening::Pane::Clear;
     }
 
     [[nodiscard]] Vec2 axisOf(StepId id) {
