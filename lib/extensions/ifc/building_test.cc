@@ -115,6 +115,60 @@ TEST(WallFaces, GapsAndWallsWithoutHoles) {
     EXPECT_FALSE(faces.find(box(4.5, 3, {1, 0}), true));
 }
 
+/// A wall of a storey at 0, cut at 1 m.
+BuildingWall wallOn(double from_x, double from_y, double to_x, double to_y, double top,
+                    double bottom = 0) {
+    BuildingWall wall;
+    wall.is_inside = true;
+    wall.section.parts = {{{{{from_x, from_y}, {to_x, from_y}, {to_x, to_y}, {from_x, to_y}}}, {}}};
+    wall.box.center = {(from_x + to_x) / 2, (from_y + to_y) / 2};
+    wall.box.length = to_x - from_x;
+    wall.box.width = to_y - from_y;
+    wall.box.bottom = bottom;
+    wall.box.top = top;
+    return wall;
+}
+
+TEST(StoreyWalls, KeepTheirHeights) {
+    Building building;
+    building.storeys = {{"g", "", 0, 1, 4, 0, 0}, {"upper", "", 3, 4, 0, 0, 0}};
+    building.walls = {wallOn(0, 0, 8, 0.2, 2.7), wallOn(0, 0.2, 0.2, 6, 3.1),
+                      wallOn(0.2, 3, 4, 3.1, 1.2), wallOn(6, 3, 6.2, 4, 5)};
+    const StoreyWalls walls = wallsOf(building, 0, ampleWork());
+    EXPECT_EQ(walls.top, 2.7);
+    // The first two meet; the outer one is higher by the slab. The partition ends at them.
+    ASSERT_EQ(walls.solids.size(), 3U);
+    EXPECT_NEAR(walls.solids[0].area(), 8 * 0.2 + 0.2 * 5.8, 1e-6);
+    EXPECT_EQ(walls.topOf(0), 2.7);
+    EXPECT_EQ(walls.topOf(1), 2.7);  // up to the next floor
+    EXPECT_EQ(walls.topOf(2), 1.2);
+    EXPECT_NEAR(walls.solids[2].area(), 3.8 * 0.1, 1e-6);
+}
+
+TEST(StoreyWalls, MeetThoughOneIsLower) {
+    Building building;
+    building.storeys = {{"g", "", 0, 1, 2, 0, 0}};
+    // They overlap, and a corner between them gets the height of the higher one.
+    building.walls = {wallOn(0, 0, 8, 0.2, 2.7), wallOn(2, 0.1, 2.1, 3, 1.2)};
+    const StoreyWalls walls = wallsOf(building, 0, ampleWork());
+    ASSERT_EQ(walls.solids.size(), 2U);
+    EXPECT_NEAR(walls.solids[0].area(), 1.6, 1e-6);
+    EXPECT_NEAR(walls.solids[1].area(), 0.28, 1e-6);
+    EXPECT_EQ(walls.topOf(1), 1.2);
+}
+
+TEST(StoreyWalls, HangingWallsThatTouchNoOtherLeaveTheFloor) {
+    Building building;
+    building.storeys = {{"g", "", 0, 1, 2, 0, 0}};
+    building.walls = {wallOn(0, 0, 8, 0.2, 2.7), wallOn(2, 2, 5, 2.2, 2, 0.9),
+                      wallOn(2, 0.2, 2.2, 1, 2.7, 0.9)};
+    const StoreyWalls walls = wallsOf(building, 0, ampleWork());
+    ASSERT_EQ(walls.raised.size(), 1U);
+    EXPECT_EQ(walls.raised[0].length, 3);
+    ASSERT_EQ(walls.solids.size(), 1U);
+    EXPECT_NEAR(walls.solids[0].area(), 1.6 + 0.16, 1e-6);
+}
+
 TEST(Building, BrokenPartsAreCounted) {
     const Building building = cabin("broken-4-m.ifc");
     EXPECT_EQ(building.spaces.size(), 2U);
@@ -169,6 +223,26 @@ TEST(Building, WallsWithoutABodyAreCounted) {
         oneStorey("#30=IFCWALL('w',$,'w',$,$,#13,$,$,$);\n", "#30"), std::nullopt, ampleWork());
     ASSERT_EQ(building.unread.size(), 1U);
     EXPECT_EQ(building.unread.front().kind, "IFCWALL without a body");
+}
+
+TEST(Building, WallsEndWhereThoseOnThemEnd) {
+    const auto top_with = [](const std::string& upper, const char* ids) {
+        const Building building = readBuilding(
+            oneStorey("#40=IFCEXTRUDEDAREASOLID(#16,#12,#11,1.2);\n"
+                      "#41=IFCSHAPEREPRESENTATION($,'Body','SweptSolid',(#40));\n"
+                      "#42=IFCPRODUCTDEFINITIONSHAPE($,$,(#41));\n"
+                      "#43=IFCCARTESIANPOINT((0.,0.,1.2));\n#44=IFCAXIS2PLACEMENT3D(#43,$,$);\n"
+                      "#45=IFCLOCALPLACEMENT(#13,#44);\n"
+                      "#30=IFCWALL('w',$,'w',$,$,#13,#42,$,$);\n" +
+                          upper,
+                      ids),
+            std::nullopt, ampleWork());
+        return building.walls.at(0).box.top;
+    };
+    EXPECT_NEAR(top_with("", "#30"), 1.2, 1e-9);
+    EXPECT_NEAR(top_with("#31=IFCWALL('u',$,'u',$,$,#45,#42,$,$);\n", "#30,#31"), 2.4, 1e-9);
+    EXPECT_NEAR(top_with("#31=IFCWINDOW('u',$,'u',$,$,#45,#42,$,1.2,5.4);\n", "#30,#31"), 2.4,
+                1e-9);
 }
 
 TEST(Building, SolidsWithoutFacesAreCounted) {

@@ -187,6 +187,7 @@ TEST(Ifc, SpacesWithoutWallsEncloseThemselves) {
         bytes.replace(at, 19, "IFCNOTAWALLANYMOREX");
     const Document document = readIfc(bytes, "spaces.ifc", {}, sceneSchemas());
     EXPECT_NEAR(environmentOf(document).indoor().area(), 23.6, 1e-4);
+    EXPECT_NEAR(environmentOf(document).height(), 2.5, 1e-6);
     EXPECT_NE(warningsOf(document).find("storey Ground floor: no walls enclose 2 spaces of 2"),
               std::string::npos);
 }

@@ -46,6 +46,29 @@ TEST(IfcRoundTrip, ZonesAroundAWallInTheirMiddle) {
     EXPECT_EQ(countOf(back, "inside"), 1U);
 }
 
+std::vector<double> numbersOf(const Document& document, const char* keyword, const char* key) {
+    std::vector<double> all;
+    for (const Record& record : document.records)
+        if (record.keyword() == keyword) all.push_back(record.number(key));
+    return all;
+}
+
+TEST(IfcRoundTrip, WallsKeepTheirHeights) {
+    const Document back =
+        readBack("ispace size=8,6\nwall from=0,-1 to=0,1 height=1.2 thickness=0.1\n");
+    EXPECT_EQ(numbersOf(back, "fence", "height"), (std::vector<double>{2.5, 2.5, 1.2}));
+    EXPECT_NEAR(environmentOf(back).indoor().area(), kRoom - 0.2, 1e-3);
+    const Document low =
+        readBack("fence path=0,0;6,0;6,4;0,4 closed=yes height=1.2\ninside at=1,1\n");
+    for (const double height : numbersOf(low, "fence", "height")) EXPECT_NEAR(height, 1.2, 1e-6);
+}
+
+TEST(IfcRoundTrip, AWallOffTheFloorLeavesTheFloorFree) {
+    const Document back = readBack("ispace size=8,6\nwall at=0,0,1 size=3,0.2,1\n");
+    EXPECT_NEAR(environmentOf(back).indoor().area(), kRoom, 1e-3);
+    EXPECT_EQ(countOf(back, "cube"), 1U);
+}
+
 TEST(IfcRoundTrip, WindowsKeepTheirGlass) {
     const auto glass_of = [](const std::string& window) {
         for (const Record& record :

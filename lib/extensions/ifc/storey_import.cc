@@ -23,8 +23,8 @@ namespace ispace::ifc {
 
 namespace {
 
-constexpr double kStoreyHeight = 1.8;  // metres to the next floor, at least
-constexpr double kBelowFloor = 0.3;    // metres that furniture may begin below its floor
+constexpr double kLeastHeight = 0.1;  // metres, of walls
+constexpr double kBelowFloor = 0.3;   // metres that furniture may begin below its floor
 constexpr double kThinnestThing = 0.01;
 constexpr double kMaxProxy = 5;  // metres, both ways: larger proxies are terrain or a building
 constexpr double kMaxRailing = 0.3;
@@ -43,13 +43,10 @@ class StoreyImport {
           work_(work),
           out_(out),
           floor_(building.storeys[storey].elevation),
+          ceiling_(ceilingOf(building, storey)),
           walls_(wallsOf(building, storey, work)) {
-        ceiling_ = std::numeric_limits<double>::infinity();
-        for (const BuildingStorey& other : building.storeys)
-            if (other.elevation >= floor_ + kStoreyHeight)
-                ceiling_ = std::min(ceiling_, other.elevation);
-        const double top = walls_.top > floor_ ? walls_.top : floor_ + options.wall_height;
-        height_ = std::max(kStoreyHeight, std::min(top, ceiling_) - floor_);
+        if (!(walls_.top > floor_)) walls_.top = floor_ + options.wall_height;  // no walls
+        height_ = heightTo(walls_.top);
     }
 
     void write() {
@@ -67,6 +64,11 @@ class StoreyImport {
     [[nodiscard]] const std::vector<PlanRegion>& rooms() const { return rooms_.regions; }
 
   private:
+    /// The height above the floor of a wall's top.
+    [[nodiscard]] double heightTo(double top) const {
+        return std::max(kLeastHeight, std::min(top, ceiling_) - floor_);
+    }
+
     /// A space and its area.
     struct Room {
         const BuildingSpace* space;
@@ -303,8 +305,9 @@ class StoreyImport {
                                            ? std::vector<bool>(lines_.size(), true)
                                            : belongsTo(rooms_.regions, lines_);
         std::size_t line = 0;
-        for (const Region& solid : walls_.solids) {
-            const std::vector<Polygon> curves = curvesOf(solid);
+        for (std::size_t k = 0; k < walls_.solids.size(); ++k) {
+            const std::vector<Polygon> curves = curvesOf(walls_.solids[k]);
+            const double height = heightTo(walls_.topOf(k));
             bool bounds = false;
             for (const Polygon& curve : curves)
                 for (std::size_t i = 0; i < curve.size(); ++i) bounds = keep[line++] || bounds;
@@ -313,13 +316,15 @@ class StoreyImport {
                     forEachEdge(curve, [this](const Segment2& edge) { written_.push_back(edge); });
                 ids_.push_back(bounds ? out_.freeId("w" + std::to_string(ids_.size() + 1), "w")
                                       : "");
-                if (bounds) out_.fence({curve, true, 0}, ids_.back(), height_);
+                heights_.push_back(height);
+                if (bounds) out_.fence({curve, true, 0}, ids_.back(), height);
             }
             if (!bounds) ++left_out_;
         }
-        for (const Segment2& sheet : walls_.sheets)
+        for (std::size_t k = 0; k < walls_.sheets.size(); ++k)
             if (keep[line++]) {
-                out_.fence({{sheet.a, sheet.b}, false, 0}, "", height_);
+                const Segment2& sheet = walls_.sheets[k];
+                out_.fence({{sheet.a, sheet.b}, false, 0}, "", heightTo(walls_.topOfSheet(k)));
                 written_.push_back(sheet);
             }
     }
@@ -346,9 +351,10 @@ class StoreyImport {
                 written_.push_back(opening.line);
             }
             const bool is_door = isPassage(opening);
+            const double whole = opening.curve ? heights_[*opening.curve] : height_;  // of the wall
             const double sill =
-                is_door ? 0 : std::clamp(one.box.bottom - floor_, 0.0, height_ - 0.05);
-            const double height = std::min(one.box.top - floor_, height_) - sill;
+                is_door ? 0 : std::clamp(one.box.bottom - floor_, 0.0, whole - 0.05);
+            const double height = std::min(one.box.top - floor_, whole) - sill;
             if (height < kThinnestThing) continue;
             Record& record = out_.add(is_door ? "door" : "window", 0);
             const std::string& name = filling(opening).name;
@@ -420,6 +426,7 @@ class StoreyImport {
 
     void writeThings() {
         for (const BuildingBox& column : walls_.columns) writeBox(column, "pillar", "column");
+        for (const BuildingBox& wall : walls_.raised) writeBox(wall, "cube", "wall");
         std::map<std::string, std::size_t> large_proxies;
         for (const BuildingThing& thing : building_.things)
             for (const BuildingBox& box : thing.boxes) {
@@ -468,14 +475,15 @@ class StoreyImport {
     const ImportOptions& options_;
     Budget& work_;
     ImportRecords& out_;
-    double floor_, ceiling_ = 0;  // of this storey: the floor above
+    double floor_, ceiling_;  // of this storey: the floor above
     StoreyWalls walls_;
-    double height_ = 0;  // of the walls
+    double height_ = 0;  // of most walls
     std::vector<Room> spaces_;
     std::vector<StoreyOpening> openings_;
     std::map<std::size_t, std::size_t> fillers_;  // by hole: the door or window that stands in it
     std::vector<Segment2> lines_;    // of all walls, in the order of their curves; then sheets
     std::vector<std::string> ids_;   // of the curves; "": left out
+    std::vector<double> heights_;    // of the curves
     std::vector<Segment2> written_;  // walls, also across gaps
     PlanRooms rooms_;
     std::size_t not_in_walls_ = 0, left_out_ = 0;

@@ -5,7 +5,11 @@
 #include "extensions/ifc/storey_plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -231,15 +235,25 @@ void carve(StoreyWalls& walls, std::span<const BuildingBox> holes) {
         boxes.push_back(
             {hole.center - u - v, hole.center + u - v, hole.center + u + v, hole.center - u + v});
     }
-    walls.solids = difference(Regions{walls.solids}, boxes);
+    std::map<double, std::vector<Region>> by_top;
+    for (std::size_t i = 0; i < walls.solids.size(); ++i)
+        by_top[-walls.topOf(i)].push_back(std::move(walls.solids[i]));
+    walls.solids.clear();
+    walls.solid_tops.clear();
+    for (auto& [top, solids] : by_top) {
+        for (Region& rest : difference(Regions{std::move(solids)}, boxes))
+            walls.solids.push_back(std::move(rest));
+        walls.solid_tops.resize(walls.solids.size(), -top);
+    }
 }
 
 namespace {
 
-constexpr double kMeet = 0.002;       // metres between walls that should meet
-constexpr double kStraight = 1e-4;    // within which corners lie on a face where another wall ends
-constexpr double kTouch = 0.01;       // and between a column and the wall it belongs to
-constexpr double kSameCorner = 1e-5;  // exporters round ends of walls that should meet
+constexpr double kStoreyHeight = 1.8;  // metres to the next floor, at least
+constexpr double kMeet = 0.002;        // metres between walls that should meet
+constexpr double kStraight = 1e-4;     // within which corners lie on a face where another wall ends
+constexpr double kTouch = 0.01;        // and between a column and the wall it belongs to
+constexpr double kSameCorner = 1e-5;   // exporters round ends of walls that should meet
 
 Layer layerOf(std::span<const Polygon> curves) {
     std::vector<Curve> all;
@@ -270,9 +284,10 @@ std::vector<std::vector<Polygon>> partsOf(const BuildingSection& section) {
     return parts;
 }
 
-/// The curves of one wall.
+/// The curves of one wall, and its top.
 struct WallCurves {
     std::vector<Polygon> curves;
+    double top = 0;
 };
 
 std::vector<Segment2> edgesOf(std::span<const WallCurves> pieces,
@@ -362,30 +377,82 @@ void tidy(Polygon& curve) {
     curve = std::move(kept);
 }
 
-/// Rounds the corners of regions as tidy(), and removes curves without area.
-void tidy(std::vector<Region>& regions) {
-    for (Region& region : regions) {
-        tidy(region.outline);
-        for (Polygon& hole : region.holes) tidy(hole);
-        std::erase_if(region.holes, [](const Polygon& hole) { return hole.size() < 3; });
-    }
-    std::erase_if(regions, [](const Region& region) { return region.outline.size() < 3; });
+/// Rounds the corners of a region as tidy(), and removes holes without area.
+/// \return false if it has no area itself
+bool tidy(Region& region) {
+    tidy(region.outline);
+    for (Polygon& hole : region.holes) tidy(hole);
+    std::erase_if(region.holes, [](const Polygon& hole) { return hole.size() < 3; });
+    return region.outline.size() >= 3;
 }
 
-/// Sets the solids to the union of layers, with straight faces where walls meet.
-void unite(StoreyWalls& walls, std::span<const Layer> layers) {
-    walls.solids = united(layers);
+/// A piece of a wall, and its height.
+struct WallPiece {
+    Layer layer;
+    double top = 0;
+};
+
+/// Sets the solids to the union of pieces, with straight faces where walls meet: the highest first,
+/// lower ones without the floor that higher ones cover.
+void unite(StoreyWalls& walls, std::span<const WallPiece> pieces) {
+    constexpr double kSameTop = 0.02;     // metres
+    constexpr std::size_t kMaxTops = 63;  // bits of LayerLabel::marks; the last has all lower ones
+    std::vector<double> tops;
+    tops.reserve(pieces.size());
+    for (const WallPiece& piece : pieces) tops.push_back(piece.top);
+    std::sort(tops.begin(), tops.end(), std::greater<>());
+    std::vector<double> steps;
+    for (const double top : tops)
+        if (steps.empty() || (top < steps.back() - kSameTop && steps.size() < kMaxTops))
+            steps.push_back(top);
+    std::vector<Layer> layers;
+    layers.reserve(pieces.size());
+    for (const WallPiece& piece : pieces) {
+        const auto step = std::find_if(steps.rbegin(), steps.rend(),
+                                       [&](double top) { return piece.top <= top; });
+        layers.push_back(piece.layer);
+        layers.back().counts = false;
+        layers.back().marks = std::uint64_t{1} << (steps.rend() - step - 1);
+    }
+    const Overlay overlay(layers);
+    walls.solids.clear();
+    walls.solid_tops.clear();
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        for (Region& solid : overlay.regions([i](const LayerLabel& label) {
+                 return label.marks != 0 &&
+                        static_cast<std::size_t>(std::countr_zero(label.marks)) == i;
+             }))
+            walls.solids.push_back(std::move(solid));
+        walls.solid_tops.resize(walls.solids.size(), steps[i]);
+    }
     const std::vector<Polygon> simple = simplified(curvesOf(walls.solids), kStraight);
     auto next = simple.begin();
-    for (Region& solid : walls.solids) {
+    std::vector<double> kept;
+    for (std::size_t i = 0; i < walls.solids.size(); ++i) {
+        Region& solid = walls.solids[i];
         solid.outline = *next++;
         for (Polygon& hole : solid.holes) hole = *next++;
+        if (tidy(solid)) kept.push_back(walls.solid_tops[i]);
     }
-    tidy(walls.solids);
+    std::erase_if(walls.solids, [](const Region& solid) { return solid.outline.size() < 3; });
+    walls.solid_tops = std::move(kept);
 }
 
-double heightOfMost(std::vector<std::pair<double, double>> tops) {
+/// Returns true if the section fills most of the box around the wall.
+bool isStraight(const BuildingWall& wall) {
+    constexpr double kMostOf = 0.8;
+    double area = 0;
+    for (const BuildingSection::Part& part : wall.section.parts)
+        if (part.removed.empty())
+            for (const Polygon& curve : part.curves) area += std::abs(signedArea(curve));
+    return area > kMostOf * wall.box.length * wall.box.width;
+}
+
+/// The height of most walls, by length: of the high ones if there are any.
+double heightOfMost(std::vector<std::pair<double, double>> tops, double high) {
     std::sort(tops.begin(), tops.end());
+    if (!tops.empty() && tops.back().first >= high)
+        std::erase_if(tops, [high](const auto& top) { return top.first < high; });
     double all = 0, sum = 0;
     for (const auto& [top, length] : tops) all += length;
     for (const auto& [top, length] : tops)
@@ -399,16 +466,34 @@ std::vector<Region> areaOf(const BuildingSection& section) {
     std::vector<Layer> layers;
     for (const std::vector<Polygon>& part : partsOf(section)) layers.push_back(layerOf(part));
     std::vector<Region> regions = united(layers);
-    tidy(regions);
+    std::erase_if(regions, [](Region& region) { return !tidy(region); });
     return regions;
 }
 
 void addPieces(StoreyWalls& walls, std::span<const Polygon> pieces) {
-    std::vector<Layer> layers;
-    layers.reserve(walls.solids.size() + pieces.size());
-    for (const Region& solid : walls.solids) layers.push_back(layerOf(curvesOf(solid)));
-    for (const Polygon& piece : pieces) layers.push_back(layerOf({&piece, 1}));
-    unite(walls, layers);
+    std::vector<WallPiece> all;
+    all.reserve(walls.solids.size() + pieces.size());
+    for (std::size_t i = 0; i < walls.solids.size(); ++i)
+        all.push_back({layerOf(curvesOf(walls.solids[i])), walls.topOf(i)});
+    for (const Polygon& piece : pieces) {
+        std::optional<double> top;  // of the walls that it joins
+        for (std::size_t i = 0; i < walls.solids.size(); ++i)
+            if (!top || walls.topOf(i) > *top)
+                if (std::any_of(piece.begin(), piece.end(), [&](Point2 p) {
+                        return walls.solids[i].locate(p) != Side::Outside;
+                    }))
+                    top = walls.topOf(i);
+        all.push_back({layerOf({&piece, 1}), top.value_or(walls.top)});
+    }
+    unite(walls, all);
+}
+
+double ceilingOf(const Building& building, std::size_t storey) {
+    double ceiling = std::numeric_limits<double>::infinity();
+    for (const BuildingStorey& other : building.storeys)
+        if (other.elevation >= building.storeys[storey].elevation + kStoreyHeight)
+            ceiling = std::min(ceiling, other.elevation);
+    return ceiling;
 }
 
 std::vector<Region> floorOf(std::span<const Region> area, const StoreyWalls& walls, Budget& work) {
@@ -447,16 +532,26 @@ std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
 }
 
 /// A column that touches a wall is a part of it, any other stands free. The walls' top is that of
-/// most inner walls, of all if none is inside.
+/// most walls of the storey itself, of all if it has none.
 StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) {
+    const double floor = building.storeys[storey].elevation;
+    const double high = floor + kStoreyHeight, ceiling = ceilingOf(building, storey);
+    const auto may_stand_free = [floor](const BuildingWall& wall) {
+        constexpr double kOffFloor = 0.3;  // metres, of walls that hang
+        return wall.is_column || (wall.box.bottom > floor + kOffFloor && isStraight(wall));
+    };
     storey = storeyOfSections(building, storey);
+    constexpr double kOfMost = std::numeric_limits<double>::infinity();
+    const auto top_of = [ceiling](const BuildingWall& wall) {
+        return wall.is_part ? kOfMost : std::min(wall.box.top, ceiling);
+    };
     StoreyWalls walls;
     std::vector<WallCurves> pieces;
     std::vector<std::pair<double, double>> tops, other_tops;
     for (const BuildingWall& wall : building.walls) {
-        if (wall.storey != storey || wall.is_column) continue;
+        if (wall.storey != storey || may_stand_free(wall)) continue;
         for (std::vector<Polygon>& part : partsOf(wall.section))
-            pieces.push_back({std::move(part)});
+            pieces.push_back({std::move(part), top_of(wall)});
         for (const Polygon& sheet : wall.section.sheets) {
             if (sheet.empty()) continue;
             Polygon line{wholeMicrometres(sheet.front())};
@@ -464,6 +559,7 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
                 if (distance(p, line.back()) > kSameCorner) line.push_back(wholeMicrometres(p));
             for (std::size_t i = 1; i < line.size(); ++i)
                 walls.sheets.push_back({line[i - 1], line[i]});
+            walls.sheet_tops.resize(walls.sheets.size(), top_of(wall));
         }
         (wall.is_inside ? tops : other_tops).emplace_back(wall.box.top, wall.box.length);
     }
@@ -471,20 +567,30 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
     const std::vector<Segment2> edges = edgesOf(pieces, owners);
     const NearSegments search(edges, work);
     for (const BuildingWall& wall : building.walls) {
-        if (wall.storey != storey || !wall.is_column) continue;
+        if (wall.storey != storey || !may_stand_free(wall)) continue;
         if (!touches(wall.box, edges, search))
-            walls.columns.push_back(wall.box);
+            (wall.is_column ? walls.columns : walls.raised).push_back(wall.box);
         else
             for (std::vector<Polygon>& part : partsOf(wall.section))
-                pieces.push_back({std::move(part)});
+                pieces.push_back({std::move(part), top_of(wall)});
     }
-    walls.top = heightOfMost(std::move(tops.empty() ? other_tops : tops));
+    walls.top = heightOfMost(std::move(tops.empty() ? other_tops : tops), high);
+    const double most = std::min(walls.top, ceiling);
+    const auto level = [&](double& top) {
+        constexpr double kSlab = 0.6, kToCeiling = 2.2, kSame = 0.1;  // metres, see wallsOf()
+        const bool is_lower = top < most && (top < floor + kToCeiling || top < most - kSlab);
+        if (top == kOfMost || (std::abs(top - most) < kSlab && !is_lower) ||
+            std::abs(top - most) < kSame)
+            top = most;
+    };
+    for (WallCurves& piece : pieces) level(piece.top);
+    for (double& top : walls.sheet_tops) level(top);
     dropCopies(pieces);
     letMeet(pieces, work);
-    std::vector<Layer> layers;
-    layers.reserve(pieces.size());
-    for (const WallCurves& piece : pieces) layers.push_back(layerOf(piece.curves));
-    unite(walls, layers);
+    std::vector<WallPiece> all;
+    all.reserve(pieces.size());
+    for (const WallCurves& piece : pieces) all.push_back({layerOf(piece.curves), piece.top});
+    unite(walls, all);
     return walls;
 }
 

@@ -19,13 +19,30 @@ std::vector<Region> areaOf(const BuildingSection& section);
 
 /// Walls of a storey, in the building's coordinates, on whole micrometres.
 struct StoreyWalls {
-    std::vector<Region> solids;  ///< walls that meet are merged
+    std::vector<Region> solids;      ///< walls that meet and are equally high are merged
+    std::vector<double> solid_tops;  ///< of each; those behind the last are as high as most
     std::vector<Segment2> sheets;
+    std::vector<double> sheet_tops;    ///< as solid_tops
     std::vector<BuildingBox> columns;  ///< that touch no wall
+    std::vector<BuildingBox> raised;   ///< straight walls off the floor that touch no other wall
     double top = 0;                    ///< of most of them, by length
+
+    [[nodiscard]] double topOf(std::size_t solid) const {
+        return solid < solid_tops.size() ? solid_tops[solid] : top;
+    }
+    [[nodiscard]] double topOfSheet(std::size_t sheet) const {
+        return sheet < sheet_tops.size() ? sheet_tops[sheet] : top;
+    }
 };
 
-/// Joins the walls of a storey: corners within 2 mm of another wall move onto it.
+/// Returns the height of the next floor above a storey, at least 1.8 m higher; infinity if it is
+/// the highest one.
+double ceilingOf(const Building& building, std::size_t storey);
+
+/// Joins the walls of a storey: corners within 2 mm of another wall move onto it. Walls of at least
+/// 2.2 m that are at most 0.6 m lower or higher than most are as high as those, since slabs and
+/// ceilings make these differences, and so are parts of walls; others keep their height, up to the
+/// next floor.
 /// \throws FormatError (without a file) as NearSegments
 StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work);
 

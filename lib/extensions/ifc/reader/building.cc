@@ -129,7 +129,7 @@ void pack(Archive& archive, BuildingSpace& space) {
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingWall& wall) {
-    archive(wall.storey, wall.is_column, wall.is_inside, wall.section, wall.box);
+    archive(wall.storey, wall.is_column, wall.is_part, wall.is_inside, wall.section, wall.box);
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingOpening& opening) {

@@ -63,9 +63,10 @@ struct BuildingSpace {
 struct BuildingWall {
     std::uint64_t storey = 0;  ///< see storeyOfSections()
     bool is_column = false;
+    bool is_part = false;    ///< of a wall, or a plate or column: the wall may be higher
     bool is_inside = false;  ///< belongs to a storey that is cut here, not to the site or another
     BuildingSection section;
-    BuildingBox box;
+    BuildingBox box;  ///< up to the top of the walls and windows that stand on it
 };
 
 /// A hole in a wall, with or without a door or window, or one of these without a hole.

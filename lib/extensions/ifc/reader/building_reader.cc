@@ -83,6 +83,7 @@ class BuildingReader {
         forEach(kThings, [this](StepId id) {
             if (!tree_.isPartOfWall(id)) addThing(id);
         });
+        raiseWalls();
         return std::move(out_);
     }
 
@@ -251,6 +252,11 @@ class BuildingReader {
         const auto first = std::partition_point(planes_.begin(), planes_.end(), [&](auto i) {
             return out_.storeys[i].cut < heights.low;
         });
+        if (!heights.empty())
+            if (auto box = boxAround(product.shape, product.axis())) upper_.push_back(*box);
+        const bool is_part =
+            is_column || !product.instance.type.starts_with("IFCWALL") || tree_.isPartOfWall(id);
+        std::optional<double> top;
         for (auto plane = first; plane != planes_.end(); ++plane) {
             const std::uint64_t i = *plane;
             const double cut = out_.storeys[i].cut;
@@ -259,14 +265,45 @@ class BuildingReader {
             BuildingWall wall;
             wall.storey = i;
             wall.is_column = is_column;
+            wall.is_part = is_part;
             wall.is_inside = own && storeyOfSections(out_, *own) == i;
             wall.section = sectionOf(product.shape, cut);
             const auto box = boxAround(product.shape, product.axis());
             if (wall.section.empty() || !box) continue;
             wall.box = *box;
+            wall.box.top = top ? *top : *(top = topAbove(product.shape, cut, [&] {
+                                              shapes_.pay(product.shape, "walls under roofs");
+                                          }));
             // Tilted members such as rafters are no columns.
             if (is_column && std::max(box->length, box->width) > kMaxColumn) continue;
             out_.walls.push_back(std::move(wall));
+        }
+    }
+
+    /// Lets low walls end where the walls and windows end that stand on them.
+    void raiseWalls() {
+        constexpr double kLow = 1.8, kGap = 0.05;  // metres
+        for (const BuildingOpening& opening : out_.openings)
+            if (!opening.has_hole) upper_.push_back(opening.box);
+        std::stable_sort(
+            upper_.begin(), upper_.end(),
+            [](const BuildingBox& a, const BuildingBox& b) { return a.bottom < b.bottom; });
+        std::size_t tests = 100'000'000;  // of very many the rest keeps its height
+        const auto holds = [](const BuildingBox& box, Point2 p) {
+            const Vec2 off = p - box.center;
+            return std::abs(dot(off, box.along)) <= box.length / 2 + kGap &&
+                   std::abs(cross(off, box.along)) <= box.width / 2 + kGap;
+        };
+        for (BuildingWall& wall : out_.walls) {
+            BuildingBox& box = wall.box;
+            if (box.top > out_.storeys[wall.storey].elevation + kLow) continue;
+            auto above = std::lower_bound(
+                upper_.begin(), upper_.end(), box.top - kGap,
+                [](const BuildingBox& one, double height) { return one.bottom < height; });
+            for (; above != upper_.end() && tests > 0; ++above, --tests)
+                if (above->bottom <= box.top + kGap && above->top > box.top &&
+                    (holds(box, above->center) || holds(*above, box.center)))
+                    box.top = above->top;
         }
     }
 
@@ -415,6 +452,7 @@ class BuildingReader {
     std::optional<double> slice_;
     std::unordered_map<StepId, std::uint64_t> storey_at_;
     std::vector<std::uint64_t> planes_;  // storeys that store sections, in the order of cuts
+    std::vector<BuildingBox> upper_;     // walls and windows that may stand on lower walls
     Building out_;
 };
 

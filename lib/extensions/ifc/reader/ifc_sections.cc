@@ -16,6 +16,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "geom/overlay/overlay.h"
 #include "geom/polygon.h"
 #include "geom/predicates.h"
 
@@ -23,8 +24,9 @@ namespace ispace::ifc {
 
 namespace {
 
-constexpr double kSameEnd = 1e-5;  // metres, between ends of edges that meet
-constexpr double kNearEnd = 0.02;  // and between ends of a curve that should close
+constexpr double kSameEnd = 1e-5;    // metres, between ends of edges that meet
+constexpr double kNearEnd = 0.02;    // and between ends of a curve that should close
+constexpr double kLeastArea = 1e-6;  // m2, of sections that cuts leave
 
 /// Appends the edges in which a plane cuts faces.
 void cutFaces(const IfcFaces& faces, double height, std::vector<Segment2>& edges) {
@@ -174,6 +176,17 @@ std::vector<Polygon> curvesAt(const IfcFaces& faces, double height, std::vector<
     return curves;
 }
 
+/// Computes the area of a part minus its removed ones.
+double remainingArea(const BuildingSection::Part& part) {
+    std::vector<Curve> curves;
+    curves.reserve(part.curves.size());
+    for (const Polygon& curve : part.curves) curves.push_back(curveOf(curve));
+    std::vector<Layer> layers{{.curves = std::move(curves)}};
+    for (const Polygon& removed : part.removed) layers.push_back({{curveOf(removed)}, false, 0, 1});
+    return Overlay(layers).area(
+        [](const LayerLabel& label) { return label.count > 0 && label.marks == 0; });
+}
+
 /// Corners of the convex hull, counter-clockwise. O(n log n)
 Polygon hullOf(std::vector<Point2> points) {
     std::sort(points.begin(), points.end(), lexLess);
@@ -254,6 +267,28 @@ BuildingSection sectionOf(const IfcShape& shape, double height) {
         section.sheets.insert(section.sheets.end(), sheets.begin(), sheets.end());
     }
     return section;
+}
+
+double topAbove(const IfcShape& shape, double from, const std::function<void()>& pay) {
+    constexpr double kNear = 0.001;  // metres
+    double high = heightsOf(shape).high;
+    if (std::all_of(shape.begin(), shape.end(),
+                    [](const IfcSolid& solid) { return solid.cuts.empty(); }))
+        return high;
+    const auto has_section = [&](double height) {
+        pay();
+        const BuildingSection section = sectionOf(shape, height);
+        return !section.sheets.empty() || std::any_of(section.parts.begin(), section.parts.end(),
+                                                      [](const BuildingSection::Part& part) {
+                                                          return remainingArea(part) > kLeastArea;
+                                                      });
+    };
+    if (has_section(high - kNear)) return high;
+    for (double low = from; high - low > kNear;) {
+        const double middle = low + (high - low) / 2;
+        (has_section(middle) ? low : high) = middle;
+    }
+    return high;
 }
 
 std::optional<BuildingBox> boxAround(const IfcShape& shape, Vec2 preferred) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,6 +22,11 @@ IfcHeights heightsOf(const IfcShape& shape);
 /// sheets.
 /// O(corners + k log k) for k edges that are cut.
 BuildingSection sectionOf(const IfcShape& shape, double height);
+
+/// Computes the height up to which a shape that has a section at `from` reaches, cuts included,
+/// within a millimetre: the sections up to there are assumed to have an area.
+/// \param pay is called before each further section
+double topAbove(const IfcShape& shape, double from, const std::function<void()>& pay);
 
 /// Computes the upright box around a shape with the smallest floor area, or along `preferred` if
 /// its floor is at most 2 % larger. std::nullopt for a shape without extent.

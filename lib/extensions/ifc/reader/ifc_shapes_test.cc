@@ -120,6 +120,15 @@ TEST(IfcShapes, HalfSpacesAreTakenAway) {
                        "#27=IFCDIRECTION((-1.,0.,1.));\n");
     EXPECT_NEAR(roof.at(0.5), 5, 1e-9);
     EXPECT_NEAR(roof.at(2), 2, 1e-9);
+    EXPECT_NEAR(topAbove(roof.shape, 0.5, [] {}), 3, 2e-3);
+    std::string lower = roof.bytes;
+    lower.replace(lower.find("(0.,0.,1.));\n#27"), 8, "(0.,0.,0");
+    const StepFile file(lower, &ampleWork());
+    const IfcFrames frames(file);
+    const IfcShape low = IfcShapes(frames, ampleWork()).shapeOf(90);
+    int paid = 0;
+    EXPECT_NEAR(topAbove(low, 0.5, [&] { ++paid; }), 2, 2e-3);
+    EXPECT_GT(paid, 5);
     // The same half-space within a boundary of 1 m by 1 m.
     const ShapeOf limited(
         kBox +
