@@ -225,6 +225,28 @@ TEST(Building, WallsWithoutABodyAreCounted) {
     EXPECT_EQ(building.unread.front().kind, "IFCWALL without a body");
 }
 
+TEST(Building, WallsBelowTheCutAreThings) {
+    std::string data = oneStorey("#30=IFCWALL('w',$,'low',$,$,#13,#19,$,$);\n", "#30");
+    data.replace(data.find("#11,2.5)"), 8, "#11,0.9)");
+    const Building low = readBuilding(data, std::nullopt, ampleWork());
+    EXPECT_TRUE(low.walls.empty());
+    ASSERT_EQ(low.things.size(), 1U);
+    EXPECT_TRUE(low.things[0].is_low_wall);
+    EXPECT_FALSE(low.things[0].is_bent);
+    EXPECT_NEAR(low.things[0].boxes.at(0).top, 0.9, 1e-9);
+    EXPECT_EQ(readBuilding(data, 0.5, ampleWork()).walls.size(), 1U);
+    const std::string profile = "IFCRECTANGLEPROFILEDEF(.AREA.,$,$,5.4,0.2)";
+    data.replace(data.find(profile), profile.size(), "IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$,#50)");
+    data.insert(data.find("#30="),
+                "#50=IFCPOLYLINE((#51,#52,#53,#54,#55,#56,#51));\n"
+                "#51=IFCCARTESIANPOINT((0.,0.));\n#52=IFCCARTESIANPOINT((4.,0.));\n"
+                "#53=IFCCARTESIANPOINT((4.,0.2));\n#54=IFCCARTESIANPOINT((0.2,0.2));\n"
+                "#55=IFCCARTESIANPOINT((0.2,3.));\n#56=IFCCARTESIANPOINT((0.,3.));\n");
+    const Building bent = readBuilding(data, std::nullopt, ampleWork());
+    ASSERT_EQ(bent.things.size(), 1U);
+    EXPECT_TRUE(bent.things[0].is_bent);
+}
+
 TEST(Building, WallsEndWhereThoseOnThemEnd) {
     const auto top_with = [](const std::string& upper, const char* ids) {
         const Building building = readBuilding(

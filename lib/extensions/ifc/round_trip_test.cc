@@ -69,6 +69,23 @@ TEST(IfcRoundTrip, AWallOffTheFloorLeavesTheFloorFree) {
     EXPECT_EQ(countOf(back, "cube"), 1U);
 }
 
+TEST(IfcRoundTrip, WallsBelowTheCutAreKept) {
+    const Document back =
+        readBack("ispace size=8,6\nwall from=1,-1 to=1,1 height=0.9 thickness=0.2\n");
+    EXPECT_NEAR(environmentOf(back).indoor().area(), kRoom, 1e-3);
+    ASSERT_EQ(countOf(back, "cube"), 1U);
+    for (const Record& record : back.records)
+        if (record.keyword() == "cube") {
+            EXPECT_EQ(record.tuple("size"), (Tuple{2, 0.2, 0.9})) << formatRecord(record);
+        }
+    // Where all are low, the error tells the height that cuts them.
+    const std::string error = errorsOf(
+        [] { readBack("fence path=0,0;6,0;6,4;0,4 closed=yes height=0.9\ninside at=1,1\n"); });
+    EXPECT_NE(error.find("4 walls are lower than the cut at 1.00 m: try --slice-walls 0.45"),
+              std::string::npos)
+        << error;
+}
+
 TEST(IfcRoundTrip, WindowsKeepTheirGlass) {
     const auto glass_of = [](const std::string& window) {
         for (const Record& record :

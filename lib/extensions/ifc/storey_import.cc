@@ -87,7 +87,27 @@ class StoreyImport {
         if (walls_.solids.empty() && walls_.sheets.empty() && spaces_.empty())
             failFile("", storeysText(building_, storey_) +
                              "; it has neither walls nor spaces to enclose a room" +
+                             lowWallsText() +
                              (building_.unread.empty() ? "" : "; " + unreadText(building_)));
+    }
+
+    [[nodiscard]] bool isLowWallHere(const BuildingThing& thing) const {
+        return thing.is_low_wall && !thing.boxes.empty() && stands(thing.boxes.front());
+    }
+
+    /// "; 4 walls are lower than the cut at 1.00 m: try --slice-walls 0.45", or "".
+    [[nodiscard]] std::string lowWallsText() const {
+        std::size_t count = 0;
+        double top = building_.storeys[storey_].cut;
+        for (const BuildingThing& thing : building_.things) {
+            if (!isLowWallHere(thing)) continue;
+            ++count;
+            top = std::min(top, thing.boxes.front().top);
+        }
+        if (count == 0) return "";
+        return "; " + countText(count, "wall") + (count == 1 ? " is" : " are") +
+               " lower than the cut at " + formatFixed(building_.storeys[storey_].cut, 2) +
+               " m: try --slice-walls " + formatDouble(wholeMicrometres((floor_ + top) / 2));
     }
 
     /// Finds a point of each space on its floor, in no wall and on no line: spaces are often drawn
@@ -428,7 +448,14 @@ class StoreyImport {
         for (const BuildingBox& column : walls_.columns) writeBox(column, "pillar", "column");
         for (const BuildingBox& wall : walls_.raised) writeBox(wall, "cube", "wall");
         std::map<std::string, std::size_t> large_proxies;
-        for (const BuildingThing& thing : building_.things)
+        std::vector<std::string> bent;
+        for (const BuildingThing& thing : building_.things) {
+            if (thing.is_bent && isLowWallHere(thing)) {
+                if (std::any_of(thing.boxes.begin(), thing.boxes.end(),
+                                [this](const BuildingBox& box) { return reachesRoom(box); }))
+                    bent.push_back(excerpt(thing.name));
+                continue;
+            }
             for (const BuildingBox& box : thing.boxes) {
                 if (thing.type == "IFCBUILDINGELEMENTPROXY" &&
                     std::min(box.length, box.width) > kMaxProxy) {
@@ -439,6 +466,13 @@ class StoreyImport {
                     continue;
                 writeBox(box, box.is_round ? "cylinder" : "cube", thing.name);
             }
+        }
+        if (!bent.empty())
+            out_.warn("storey " + storeyWord(building_, storey_) + ": " +
+                      countText(bent.size(), "wall") + " lower than the cut at " +
+                      formatFixed(building_.storeys[storey_].cut, 2) +
+                      " m and not straight left out: " + bent.front() +
+                      (bent.size() > 1 ? " ..." : "") + "; --slice-walls cuts lower");
         for (const auto& [name, count] : large_proxies)
             out_.warn(countText(count, "object") + " called " + excerpt(name) +
                       ", more than 5 m long and wide, in the storey " +

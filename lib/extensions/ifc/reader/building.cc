@@ -138,7 +138,7 @@ void pack(Archive& archive, BuildingOpening& opening) {
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingThing& thing) {
-    archive(thing.type, thing.name, thing.boxes);
+    archive(thing.type, thing.name, thing.is_low_wall, thing.is_bent, thing.boxes);
 }
 template <typename Archive>
 void pack(Archive& archive, BuildingUnread& part) {

@@ -82,10 +82,12 @@ struct BuildingOpening {
     BuildingBox box;           ///< the length lies along the wall if the file gives its direction
 };
 
-/// Furniture, fixtures, stairs and the like.
+/// Furniture, fixtures, stairs and the like, and walls that stand on a floor below its cut.
 struct BuildingThing {
     std::string type;  ///< IFCFURNISHINGELEMENT
     std::string name;
+    bool is_low_wall = false;
+    bool is_bent = false;  ///< a low wall of which the boxes hold more than the wall
     std::vector<BuildingBox> boxes;
 };
 

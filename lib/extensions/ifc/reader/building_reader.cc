@@ -24,6 +24,8 @@ namespace {
 constexpr double kAboveFloor = 1;      // metres, of sections: over most sills, under most lintels
 constexpr double kMinSpace = 1.2;      // metres: lower spaces are no rooms
 constexpr double kMaxColumn = 2.5;     // metres
+constexpr double kLeastWall = 0.05;    // metres: lower walls are edges of the floor
+constexpr double kOnFloor = 0.3;       // metres above and below a floor on which a wall stands
 constexpr std::size_t kMaxBoxes = 40;  // of one element
 constexpr double kLooseBox = 1.3;      // share of its parts' floor that a box may take
 
@@ -81,7 +83,7 @@ class BuildingReader {
             for (const StepId id : file_.ofType(type)) addHole(id);
         forEach(kDoors, [this](StepId id) { addFiller(id); });
         forEach(kThings, [this](StepId id) {
-            if (!tree_.isPartOfWall(id)) addThing(id);
+            if (!tree_.isPartOfWall(id)) addThing(productOf(id), false);
         });
         raiseWalls();
         return std::move(out_);
@@ -252,6 +254,7 @@ class BuildingReader {
         const auto first = std::partition_point(planes_.begin(), planes_.end(), [&](auto i) {
             return out_.storeys[i].cut < heights.low;
         });
+        if (!is_column && isLowWall(product, heights)) return addThing(product, true);
         if (!heights.empty())
             if (auto box = boxAround(product.shape, product.axis())) upper_.push_back(*box);
         const bool is_part =
@@ -305,6 +308,17 @@ class BuildingReader {
                     (holds(box, above->center) || holds(*above, box.center)))
                     box.top = above->top;
         }
+    }
+
+    /// Returns true for a wall that stands on the floor of a storey and ends below its cut. Plates
+    /// of facades and members are no walls by themselves.
+    [[nodiscard]] bool isLowWall(const Product& product, const IfcHeights& heights) const {
+        const std::string_view type = product.instance.type;
+        if (heights.empty() || heights.high - heights.low < kLeastWall ||
+            !(type.starts_with("IFCWALL") || type == "IFCBUILDINGELEMENTPART"))
+            return false;
+        const BuildingStorey& storey = out_.storeys[storeyAtHeight(heights.low)];
+        return std::abs(heights.low - storey.elevation) <= kOnFloor && heights.high <= storey.cut;
     }
 
     [[nodiscard]] bool isPartial(StepId space) {
@@ -427,9 +441,9 @@ class BuildingReader {
         if (!tree_.fillsHole(id)) addOpening(id, id, axisOf(id));
     }
 
-    void addThing(StepId id) {
-        const Product product = productOf(id);
-        BuildingThing thing{std::string(product.instance.type), product.instance[2].text(), {}};
+    void addThing(const Product& product, bool is_low_wall) {
+        BuildingThing thing{
+            std::string(product.instance.type), product.instance[2].text(), is_low_wall, false, {}};
         const auto whole = boxAround(product.shape, product.axis());
         if (!whole) return;
         double floor = 0;
@@ -439,10 +453,22 @@ class BuildingReader {
             if (!box) continue;
             floor += box->length * box->width;
             thing.boxes.push_back(*box);
+            if (is_low_wall) thing.is_bent = thing.is_bent || isLoose(*box, solid);
         }
-        if (thing.boxes.empty() || whole->length * whole->width < kLooseBox * floor)
+        if (thing.boxes.empty() || whole->length * whole->width < kLooseBox * floor) {
             thing.boxes = {*whole};
+            thing.is_bent = thing.is_bent || product.shape.size() > kMaxBoxes;
+        }
         out_.things.push_back(std::move(thing));
+    }
+
+    /// Returns true if the solid has much less floor than the box around it.
+    [[nodiscard]] static bool isLoose(const BuildingBox& box, const IfcSolid& solid) {
+        const BuildingSection section = sectionOf({solid}, box.bottom + (box.top - box.bottom) / 2);
+        double floor = 0;
+        for (const BuildingSection::Part& part : section.parts)
+            for (const Polygon& curve : part.curves) floor += std::abs(signedArea(curve));
+        return box.length * box.width > kLooseBox * floor;
     }
 
     const StepFile& file_;
