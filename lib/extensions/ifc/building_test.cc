@@ -169,6 +169,21 @@ TEST(StoreyWalls, HangingWallsThatTouchNoOtherLeaveTheFloor) {
     EXPECT_NEAR(walls.solids[0].area(), 1.6 + 0.16, 1e-6);
 }
 
+TEST(StoreyWalls, CornersOfThinWallsAreNotBent) {
+    // Walls of 5 mm that meet at 45 degrees, with the piece of their mitre.
+    const double h = 0.0025, d = h * std::sqrt(0.5);
+    Building building;
+    building.storeys = {{"g", "", 0, 1, 2, 0, 0}};
+    BuildingWall level = wallOn(0, -h, 2, h, 2.5), slope = level, mitre = level;
+    slope.section.parts[0].curves = {{{d, -d}, {-d, d}, {-1 - d, -1 + d}, {-1 + d, -1 - d}}};
+    mitre.section.parts[0].curves = {{{0, 0}, {0, h}, {-h * (std::sqrt(2) - 1), h}, {-d, d}}};
+    building.walls = {level, mitre, slope};
+    const StoreyWalls walls = wallsOf(building, 0, ampleWork());
+    ASSERT_EQ(walls.solids.size(), 1U);
+    EXPECT_EQ(walls.solids[0].outline.size(), 6U);
+    EXPECT_NEAR(walls.solids[0].area(), (2 + std::sqrt(2)) * 2 * h, 1e-5);
+}
+
 TEST(Building, BrokenPartsAreCounted) {
     const Building building = cabin("broken-4-m.ifc");
     EXPECT_EQ(building.spaces.size(), 2U);

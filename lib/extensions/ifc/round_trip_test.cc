@@ -102,6 +102,16 @@ TEST(IfcRoundTrip, WindowsKeepTheirGlass) {
     EXPECT_EQ(glass_of("open=yes"), "none");
 }
 
+TEST(IfcRoundTrip, CornersOf45DegreesStayStraight) {
+    const Document back = readBack("fence path=0,0;4,0;4,4;2,4;0,2 closed=yes\n");
+    EXPECT_EQ(warningsOf(back), "");
+    EXPECT_EQ(countOf(back, "fence"), 2U);
+    for (const Record& record : back.records)
+        if (record.keyword() == "fence") {
+            EXPECT_EQ(record.list("path").size(), 5U);
+        }
+}
+
 }  // namespace
 
 }  // namespace ispace::ifc

@@ -316,21 +316,54 @@ void dropCopies(std::vector<WallCurves>& pieces) {
     });
 }
 
-/// Moves corners onto corners of earlier pieces, else onto edges of others, within kMeet.
+/// How far the corners of a piece may move: a part of its thickness, twice its area by its
+/// boundary, so that thin ones are not bent.
+double reachOf(const WallCurves& piece) {
+    constexpr double kPart = 0.25;
+    double area = 0, boundary = 0;
+    for (const Polygon& curve : piece.curves) {
+        area += signedArea(curve);
+        forEachEdge(curve, [&](const Segment2& edge) { boundary += distance(edge.a, edge.b); });
+    }
+    return boundary > 0 ? std::min(kMeet, kPart * 2 * std::abs(area) / boundary) : 0;
+}
+
+/// Returns true if the piece covers the point, but for its boundary.
+bool covers(const WallCurves& piece, Point2 p, Budget& work) {
+    constexpr std::size_t kPerUnit = 64;
+    bool is_inside = false;
+    std::size_t corners = 0;
+    for (const Polygon& curve : piece.curves) {
+        corners += curve.size();
+        const Side side = locate(curve, p);
+        if (side == Side::Boundary) return false;
+        is_inside = is_inside != (side == Side::Inside);
+    }
+    if (!work.take(corners / kPerUnit))
+        throw FormatError(Diagnostic{"", 0, 0, "walls that meet make " + work.excess()});
+    return is_inside;
+}
+
+/// Moves corners onto corners of earlier pieces, else onto edges of others, within kMeet. Corners
+/// within another piece stay: it meets theirs already.
 void letMeet(std::vector<WallCurves>& pieces, Budget& work) {
     std::vector<std::size_t> owners;
     const std::vector<Segment2> edges = edgesOf(pieces, owners);
     const NearSegments search(edges, work);
-    for (std::size_t i = 0; i < pieces.size(); ++i)
+    const std::vector<WallCurves> before = pieces;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        const double reach = reachOf(before[i]);
         for (Polygon& curve : pieces[i].curves)
             for (Point2& corner : curve) {
                 Point2 best = corner;
-                double apart = kMeet;
+                double apart = reach;
                 bool at_corner = false;
-                for (const std::size_t k : search.near(corner, kMeet)) {
+                std::set<std::size_t> others;
+                for (const std::size_t k : search.near(corner, reach)) {
                     if (owners[k] == i) continue;
+                    others.insert(owners[k]);
                     for (const Point2 end : {edges[k].a, edges[k].b})
-                        if (owners[k] < i && distance(end, corner) <= (at_corner ? apart : kMeet)) {
+                        if (owners[k] < i && distance(end, corner) <= (at_corner ? apart : reach)) {
                             best = end;
                             apart = distance(end, corner);
                             at_corner = true;
@@ -341,8 +374,13 @@ void letMeet(std::vector<WallCurves>& pieces, Budget& work) {
                         apart = distance(foot, corner);
                     }
                 }
+                if (apart > kSameCorner &&
+                    std::any_of(others.begin(), others.end(),
+                                [&](std::size_t k) { return covers(before[k], corner, work); }))
+                    continue;
                 corner = best;
             }
+    }
 }
 
 /// Returns true if the box touches one of the edges, or lies inside their outline.
