@@ -115,6 +115,25 @@ TEST(WallFaces, GapsAndWallsWithoutHoles) {
     EXPECT_FALSE(faces.find(box(4.5, 3, {1, 0}), true));
 }
 
+TEST(StoreyWalls, NichesKeepTheirSize) {
+    const auto area_without = [](Vec2 along, double length, double width, Point2 center) {
+        StoreyWalls walls;
+        walls.solids = {{{{0, 0}, {4, 0}, {4, 0.2}, {0, 0.2}}, {}}};
+        BuildingBox hole;
+        hole.center = center;
+        hole.along = along;
+        hole.length = length;
+        hole.width = width;
+        carve(walls, {&hole, 1});
+        return Regions{walls.solids}.area();
+    };
+    // 1 m long and 0.1 m deep, out of one face.
+    EXPECT_NEAR(area_without({1, 0}, 1, 0.2, {2, 0}), 0.7, 1e-9);
+    EXPECT_NEAR(area_without({0, 1}, 0.2, 1, {2, 0}), 0.7, 1e-9);
+    // Through the wall, 1 cm short of both faces.
+    EXPECT_NEAR(area_without({1, 0}, 1, 0.18, {2, 0.1}), 0.6, 1e-9);
+}
+
 /// A wall of a storey at 0, cut at 1 m.
 BuildingWall wallOn(double from_x, double from_y, double to_x, double to_y, double top,
                     double bottom = 0) {

@@ -5,6 +5,7 @@
 #include "extensions/ifc/storey_plan.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -227,13 +228,33 @@ std::optional<Polygon> WallFaces::missingWall(const BuildingBox& box, bool from_
 }
 
 void carve(StoreyWalls& walls, std::span<const BuildingBox> holes) {
-    constexpr double kBeyond = 0.02;
+    constexpr double kBeyond = 0.02;  // of a side that leaves the wall, so that no skin is left
+    constexpr std::array kShares{-0.4, -0.2, 0.0, 0.2, 0.4};  // of a side, where it is tested
+    std::vector<Box2> boxes_of_walls;
+    boxes_of_walls.reserve(walls.solids.size());
+    for (const Region& solid : walls.solids) boxes_of_walls.push_back(bounds(solid.outline));
+    const auto is_in_wall = [&](Point2 p) {
+        for (std::size_t i = 0; i < walls.solids.size(); ++i)
+            if (boxes_of_walls[i].contains(p) && walls.solids[i].locate(p) != Side::Outside)
+                return true;
+        return false;
+    };
     std::vector<Polygon> boxes;
+    boxes.reserve(holes.size());
     for (const BuildingBox& hole : holes) {
-        const Vec2 u = hole.length / 2 * hole.along;
-        const Vec2 v = (hole.width / 2 + kBeyond) * perpendicular(hole.along);
-        boxes.push_back(
-            {hole.center - u - v, hole.center + u - v, hole.center + u + v, hole.center - u + v});
+        const Vec2 u = hole.along, v = perpendicular(u);
+        // A side that touches the wall beyond, as the back of a niche, stays.
+        const auto beyond = [&](Vec2 out, double half, Vec2 side, double width) {
+            const Point2 middle = hole.center + (half + kBeyond) * out;
+            const bool ends_in_wall = std::any_of(
+                kShares.begin(), kShares.end(),
+                [&](double share) { return is_in_wall(middle + share * width * side); });
+            return ends_in_wall ? half : half + kBeyond;
+        };
+        const double l = hole.length / 2, w = hole.width / 2;
+        const double back = beyond(-v, w, u, hole.length), front = beyond(v, w, u, hole.length);
+        boxes.push_back({hole.center - l * u - back * v, hole.center + l * u - back * v,
+                         hole.center + l * u + front * v, hole.center - l * u + front * v});
     }
     std::map<double, std::vector<Region>> by_top;
     for (std::size_t i = 0; i < walls.solids.size(); ++i)
