@@ -602,7 +602,8 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
     storey = storeyOfSections(building, storey);
     constexpr double kOfMost = std::numeric_limits<double>::infinity();
     const auto top_of = [ceiling](const BuildingWall& wall) {
-        return wall.is_part ? kOfMost : std::min(wall.box.top, ceiling);
+        if (wall.is_part) return kOfMost;
+        return std::min(wall.box.top, ceiling);
     };
     StoreyWalls walls;
     std::vector<WallCurves> pieces;
