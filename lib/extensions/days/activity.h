@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/days: days of people, lines of scripts such as `daily 07:30 ann goes kitchen`.
+//
+// The course of a day is the same for any number of threads: searches for ways are counted in
+// cells, not in seconds.
+//
+//     DayPlan plan = readDayPlan("at 07:30 ann uses kettle 3min\n", "week.txt", world);
+//     simulation.follow(std::make_shared<ActivityDirector>(std::move(plan)));
 #pragma once
 
 #include <cstdint>
