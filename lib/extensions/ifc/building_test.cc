@@ -188,6 +188,29 @@ TEST(StoreyWalls, HangingWallsThatTouchNoOtherLeaveTheFloor) {
     EXPECT_NEAR(walls.solids[0].area(), 1.6 + 0.16, 1e-6);
 }
 
+TEST(StoreyWalls, HangingWallsThatTouchEachOtherAreWalls) {
+    Building building;
+    building.storeys = {{"g", "", 0, 1, 4, 0, 0}};
+    // The storey lies 0.45 m below the feet of all walls.
+    building.walls = {wallOn(0, 0, 8, 0.2, 2.7, 0.45), wallOn(0, 5.8, 8, 6, 2.7, 0.45),
+                      wallOn(0, 0.2, 0.2, 5.8, 2.7, 0.45), wallOn(7.8, 0.2, 8, 5.8, 2.7, 0.45)};
+    const StoreyWalls ring = wallsOf(building, 0, ampleWork());
+    EXPECT_TRUE(ring.raised.empty());
+    ASSERT_EQ(ring.solids.size(), 1U);
+    ASSERT_EQ(ring.solids[0].holes.size(), 1U);
+    EXPECT_NEAR(ring.solids[0].area(), 8 * 6 - 7.6 * 5.6, 1e-6);
+    EXPECT_EQ(ring.top, 2.7);
+    EXPECT_EQ(ring.topOf(0), 2.7);
+    // Copies of one wall touch each other, too, but are one. A column at it stands free.
+    building.walls = {wallOn(0, 0, 8, 0.2, 2.7), wallOn(2, 2, 5, 2.2, 2, 0.9),
+                      wallOn(2, 2, 5, 2.2, 2, 0.9), wallOn(5, 2, 5.2, 2.2, 2)};
+    building.walls.back().is_column = true;
+    const StoreyWalls copies = wallsOf(building, 0, ampleWork());
+    EXPECT_EQ(copies.raised.size(), 1U);
+    EXPECT_EQ(copies.columns.size(), 1U);
+    EXPECT_EQ(copies.solids.size(), 1U);
+}
+
 TEST(StoreyWalls, CornersOfThinWallsAreNotBent) {
     // Walls of 5 mm that meet at 45 degrees, with the piece of their mitre.
     const double h = 0.0025, d = h * std::sqrt(0.5);

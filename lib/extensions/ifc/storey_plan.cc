@@ -309,6 +309,7 @@ std::vector<std::vector<Polygon>> partsOf(const BuildingSection& section) {
 struct WallCurves {
     std::vector<Polygon> curves;
     double top = 0;
+    const BuildingWall* wall = nullptr;
 };
 
 std::vector<Segment2> edgesOf(std::span<const WallCurves> pieces,
@@ -404,16 +405,20 @@ void letMeet(std::vector<WallCurves>& pieces, Budget& work) {
     }
 }
 
-/// Returns true if the box touches one of the edges, or lies inside their outline.
-bool touches(const BuildingBox& box, std::span<const Segment2> edges, const NearSegments& search) {
+/// Returns true if the box touches one of the edges that count.
+/// \param counts is called with their indices
+template <typename Counts>
+bool touches(const BuildingBox& box, std::span<const Segment2> edges, const NearSegments& search,
+             Counts counts) {
     const Vec2 u = box.length / 2 * box.along, v = box.width / 2 * perpendicular(box.along);
     const Polygon corners{box.center - u - v, box.center + u - v, box.center + u + v,
                           box.center - u + v};
     bool touch = false;
     forEachEdge(corners, [&](const Segment2& side) {
         for (const std::size_t k : search.near(bounds(side), kTouch))
-            touch = touch || intersects(side, edges[k]) || distance(side.a, edges[k]) <= kTouch ||
-                    distance(edges[k].a, side) <= kTouch;
+            touch = touch || (counts(k) &&
+                              (intersects(side, edges[k]) || distance(side.a, edges[k]) <= kTouch ||
+                               distance(edges[k].a, side) <= kTouch));
     });
     return touch;
 }
@@ -590,14 +595,16 @@ std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
     return static_cast<std::uint64_t>(first - building.storeys.begin());
 }
 
-/// A column that touches a wall is a part of it, any other stands free. The walls' top is that of
-/// most walls of the storey itself, of all if it has none.
+/// A column that touches a wall is a part of it, any other stands free; so does a hanging wall, a
+/// straight one off the floor, but walls that hang and touch each other are walls: the floor may
+/// lie below all of them. The walls' top is that of most walls of the storey itself, of all if it
+/// has none.
 StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) {
     const double floor = building.storeys[storey].elevation;
     const double high = floor + kStoreyHeight, ceiling = ceilingOf(building, storey);
-    const auto may_stand_free = [floor](const BuildingWall& wall) {
-        constexpr double kOffFloor = 0.3;  // metres, of walls that hang
-        return wall.is_column || (wall.box.bottom > floor + kOffFloor && isStraight(wall));
+    const auto hangs = [floor](const BuildingWall& wall) {
+        constexpr double kOffFloor = 0.3;  // metres
+        return wall.box.bottom > floor + kOffFloor && isStraight(wall);
     };
     storey = storeyOfSections(building, storey);
     constexpr double kOfMost = std::numeric_limits<double>::infinity();
@@ -606,33 +613,57 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
         return std::min(wall.box.top, ceiling);
     };
     StoreyWalls walls;
+    std::vector<const BuildingWall*> standing, hanging, columns;
+    for (const BuildingWall& wall : building.walls)
+        if (wall.storey == storey)
+            (wall.is_column ? columns : hangs(wall) ? hanging : standing).push_back(&wall);
     std::vector<WallCurves> pieces;
-    std::vector<std::pair<double, double>> tops, other_tops;
-    for (const BuildingWall& wall : building.walls) {
-        if (wall.storey != storey || may_stand_free(wall)) continue;
+    const auto add_pieces = [&](const BuildingWall& wall) {
         for (std::vector<Polygon>& part : partsOf(wall.section))
-            pieces.push_back({std::move(part), top_of(wall)});
-        for (const Polygon& sheet : wall.section.sheets) {
+            pieces.push_back({std::move(part), top_of(wall), &wall});
+    };
+    for (const BuildingWall* const wall : standing) add_pieces(*wall);
+    for (const BuildingWall* const wall : hanging) add_pieces(*wall);
+    dropCopies(pieces);  // which would touch each other
+    std::set<const BuildingWall*> distinct;
+    for (const WallCurves& piece : pieces) distinct.insert(piece.wall);
+    std::erase_if(hanging, [&](const BuildingWall* wall) { return !distinct.contains(wall); });
+    std::vector<std::size_t> owners;
+    const std::vector<Segment2> edges = edgesOf(pieces, owners);
+    std::vector<const BuildingWall*> wall_of;  // of each edge
+    wall_of.reserve(owners.size());
+    for (const std::size_t piece : owners) wall_of.push_back(pieces[piece].wall);
+    const NearSegments search(edges, work);
+    std::set<const BuildingWall*> raised;
+    for (const BuildingWall* const wall : hanging) {
+        const auto is_other = [&](std::size_t k) { return wall_of[k] != wall; };
+        if (touches(wall->box, edges, search, is_other)) continue;
+        raised.insert(wall);
+        walls.raised.push_back(wall->box);
+    }
+    const auto is_raised = [&](const BuildingWall* wall) { return raised.contains(wall); };
+    std::erase_if(pieces, [&](const WallCurves& piece) { return is_raised(piece.wall); });
+    std::erase_if(hanging, is_raised);
+    standing.insert(standing.end(), hanging.begin(), hanging.end());
+    std::vector<std::pair<double, double>> tops, other_tops;
+    for (const BuildingWall* const wall : standing) {
+        for (const Polygon& sheet : wall->section.sheets) {
             if (sheet.empty()) continue;
             Polygon line{wholeMicrometres(sheet.front())};
             for (const Point2 p : sheet)
                 if (distance(p, line.back()) > kSameCorner) line.push_back(wholeMicrometres(p));
             for (std::size_t i = 1; i < line.size(); ++i)
                 walls.sheets.push_back({line[i - 1], line[i]});
-            walls.sheet_tops.resize(walls.sheets.size(), top_of(wall));
+            walls.sheet_tops.resize(walls.sheets.size(), top_of(*wall));
         }
-        (wall.is_inside ? tops : other_tops).emplace_back(wall.box.top, wall.box.length);
+        (wall->is_inside ? tops : other_tops).emplace_back(wall->box.top, wall->box.length);
     }
-    std::vector<std::size_t> owners;
-    const std::vector<Segment2> edges = edgesOf(pieces, owners);
-    const NearSegments search(edges, work);
-    for (const BuildingWall& wall : building.walls) {
-        if (wall.storey != storey || !may_stand_free(wall)) continue;
-        if (!touches(wall.box, edges, search))
-            (wall.is_column ? walls.columns : walls.raised).push_back(wall.box);
+    const auto stands = [&](std::size_t k) { return !is_raised(wall_of[k]); };
+    for (const BuildingWall* const wall : columns) {
+        if (touches(wall->box, edges, search, stands))
+            add_pieces(*wall);
         else
-            for (std::vector<Polygon>& part : partsOf(wall.section))
-                pieces.push_back({std::move(part), top_of(wall)});
+            walls.columns.push_back(wall->box);
     }
     walls.top = heightOfMost(std::move(tops.empty() ? other_tops : tops), high);
     const double most = std::min(walls.top, ceiling);
