@@ -303,8 +303,9 @@ class BuildingReader {
             auto above = std::lower_bound(
                 upper_.begin(), upper_.end(), box.top - kGap,
                 [](const BuildingBox& one, double height) { return one.bottom < height; });
-            for (; above != upper_.end() && tests > 0; ++above, --tests)
-                if (above->bottom <= box.top + kGap && above->top > box.top &&
+            for (; above != upper_.end() && above->bottom <= box.top + kGap && tests > 0;
+                 ++above, --tests)
+                if (above->top > box.top &&
                     (holds(box, above->center) || holds(*above, box.center)))
                     box.top = above->top;
         }
