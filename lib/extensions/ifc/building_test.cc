@@ -164,6 +164,29 @@ TEST(StoreyWalls, KeepTheirHeights) {
     EXPECT_NEAR(walls.solids[2].area(), 3.8 * 0.1, 1e-6);
 }
 
+TEST(StoreyWalls, GablesEndWithMost) {
+    Building building;
+    building.storeys = {{"g", "", 0, 1, 4, 0, 0}};
+    building.walls = {wallOn(0, 0, 10, 0.2, 3), wallOn(0, 4.8, 10, 5, 3),
+                      wallOn(0, 0.2, 0.2, 4.8, 5.5), wallOn(9.8, 0.2, 10, 4.8, 5.5)};
+    const StoreyWalls walls = wallsOf(building, 0, ampleWork());
+    EXPECT_EQ(walls.top, 3);
+    ASSERT_EQ(walls.solids.size(), 1U);
+    EXPECT_EQ(walls.topOf(0), 3);
+}
+
+TEST(StoreyWalls, OfOtherStoreysGiveTheHeightWhereItsOwnAreLow) {
+    Building building;
+    building.storeys = {{"g", "", 0, 1, 4, 0, 0}};
+    building.walls = {wallOn(0, 0, 8, 0.2, 2.7), wallOn(2, 2, 5, 2.1, 1.2)};
+    building.walls[0].is_inside = false;
+    const StoreyWalls walls = wallsOf(building, 0, ampleWork());
+    EXPECT_EQ(walls.top, 2.7);
+    ASSERT_EQ(walls.solids.size(), 2U);
+    EXPECT_EQ(walls.topOf(0), 2.7);
+    EXPECT_EQ(walls.topOf(1), 1.2);
+}
+
 TEST(StoreyWalls, MeetThoughOneIsLower) {
     Building building;
     building.storeys = {{"g", "", 0, 1, 2, 0, 0}};

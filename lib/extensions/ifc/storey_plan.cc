@@ -597,8 +597,8 @@ std::uint64_t storeyOfSections(const Building& building, std::uint64_t storey) {
 
 /// A column that touches a wall is a part of it, any other stands free; so does a hanging wall, a
 /// straight one off the floor, but walls that hang and touch each other are walls: the floor may
-/// lie below all of them. The walls' top is that of most walls of the storey itself, of all if it
-/// has none.
+/// lie below all of them. The walls' top is that of most walls of the storey itself, of all if none
+/// of these has 1.8 m.
 StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) {
     const double floor = building.storeys[storey].elevation;
     const double high = floor + kStoreyHeight, ceiling = ceilingOf(building, storey);
@@ -665,14 +665,15 @@ StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work) 
         else
             walls.columns.push_back(wall->box);
     }
-    walls.top = heightOfMost(std::move(tops.empty() ? other_tops : tops), high);
+    if (std::none_of(tops.begin(), tops.end(),
+                     [high](const auto& one) { return one.first >= high; }))
+        tops.insert(tops.end(), other_tops.begin(), other_tops.end());
+    walls.top = heightOfMost(std::move(tops), high);
     const double most = std::min(walls.top, ceiling);
     const auto level = [&](double& top) {
         constexpr double kSlab = 0.6, kToCeiling = 2.2, kSame = 0.1;  // metres, see wallsOf()
-        const bool is_lower = top < most && (top < floor + kToCeiling || top < most - kSlab);
-        if (top == kOfMost || (std::abs(top - most) < kSlab && !is_lower) ||
-            std::abs(top - most) < kSame)
-            top = most;
+        const bool is_lower = top < floor + kToCeiling || top < most - kSlab;
+        if (!is_lower || top > most - kSame) top = most;
     };
     for (WallCurves& piece : pieces) level(piece.top);
     for (double& top : walls.sheet_tops) level(top);

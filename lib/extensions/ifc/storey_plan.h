@@ -39,10 +39,10 @@ struct StoreyWalls {
 /// the highest one.
 double ceilingOf(const Building& building, std::size_t storey);
 
-/// Joins the walls of a storey: corners within 2 mm of another wall move onto it. Walls of at least
-/// 2.2 m that are at most 0.6 m lower or higher than most are as high as those, since slabs and
-/// ceilings make these differences, and so are parts of walls; others keep their height, up to the
-/// next floor.
+/// Joins the walls of a storey: corners within 2 mm of another wall move onto it. Lower walls than
+/// most keep their height, but those of at least 2.2 m that are at most 0.6 m lower are as high as
+/// most, since slabs and ceilings make these differences, and so are parts of walls. Higher walls,
+/// such as gables, end with most: the room is not higher because of them.
 /// \throws FormatError (without a file) as NearSegments
 StoreyWalls wallsOf(const Building& building, std::size_t storey, Budget& work);
 
