@@ -107,5 +107,14 @@ TEST(LinePlan, DoorsOverWallsOfTwoLines) {
                 9.6 * 6 + 0.4 * 1.2, 1e-6);
 }
 
+TEST(LinePlan, DoorsOverWallsWithLinesOfPlaster) {
+    const std::string room = rectangle("WALL", 0, 0, 10, 6);
+    const std::string partition = room + line("WALL", 4.9, 0, 4.9, 6) +
+                                  line("WALL", 4.915, 0, 4.915, 6) +
+                                  line("WALL", 5.155, 0, 5.155, 6);
+    EXPECT_NEAR(areaOf(partition + line("DOOR", 4.9, 2, 4, 2) + arc("DOOR", 4.9, 2, 0.9, 90, 180)),
+                60 - 0.255 * 6 + 0.255 * 0.9, 1e-6);
+}
+
 }  // namespace
 }  // namespace ispace::cad

@@ -19,12 +19,13 @@ namespace ispace {
 
 namespace {
 
+constexpr double kInWall = 0.005;  // metres: beside a line, in the space behind it
+
 /// Metres: depth of a doorway. A deeper or shorter space behind a door that no symbol opens on its
 /// far side is a cupboard.
-constexpr double kThinnestWall = 0.03, kThickestWall = 0.6, kThickestShut = 0.4;
+constexpr double kThinnestWall = 2 * kInWall, kThickestWall = 0.6, kThickestShut = 0.4;
 constexpr double kLongWall = 2;  // widths of the door
 
-constexpr double kInWall = 0.005;     // metres: beside a line, in the space behind it
 constexpr double kNear = 0.1;         // of the ends of openings in both lines
 constexpr double kOnJamb = 0.01;      // of a drawn jamb
 constexpr double kAlmostEven = 0.02;  // sine of the angle between the lines of a wall
