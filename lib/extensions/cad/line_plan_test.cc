@@ -116,5 +116,22 @@ TEST(LinePlan, DoorsOverWallsWithLinesOfPlaster) {
                 60 - 0.255 * 6 + 0.255 * 0.9, 1e-6);
 }
 
+// A shelf behind a door in its middle is deep as a wall, and ends beside the door.
+TEST(LinePlan, CupboardsOfShelvesKeepTheirBacks) {
+    const std::string cupboard = rectangle("WALL", 0, 0, 10, 6) + line("WALL", 5, 0, 5, 6) +
+                                 line("WALL", 4.65, 2, 4.65, 4) + line("WALL", 4.65, 2, 5, 2) +
+                                 line("WALL", 4.65, 4, 5, 4);
+    EXPECT_NEAR(areaOf(cupboard + line("DOOR", 4.65, 2.6, 3.85, 2.6) +
+                       arc("DOOR", 4.65, 2.6, 0.8, 90, 180)),
+                5 * 6, 1e-6);
+    // The wall of a house ends beside a door in its corner.
+    const std::string house = rectangle("WALL", 0, 0, 10, 6);
+    const std::string partition =
+        house + line("WALL", 4.9, 0, 4.9, 6) + line("WALL", 5.1, 0, 5.1, 6);
+    EXPECT_NEAR(
+        areaOf(partition + line("DOOR", 4.9, 0.1, 4, 0.1) + arc("DOOR", 4.9, 0.1, 0.9, 90, 180)),
+        60 - 0.2 * 6 + 0.2 * 0.9, 1e-6);
+}
+
 }  // namespace
 }  // namespace ispace::cad

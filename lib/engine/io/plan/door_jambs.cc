@@ -22,8 +22,9 @@ namespace {
 constexpr double kInWall = 0.005;  // metres: beside a line, in the space behind it
 
 /// Metres: depth of a doorway. A deeper or shorter space behind a door that no symbol opens on its
-/// far side is a cupboard.
+/// far side is a cupboard, and so is one as deep as shelves that ends beside the door.
 constexpr double kThinnestWall = 2 * kInWall, kThickestWall = 0.6, kThickestShut = 0.4;
+constexpr double kShelf = 0.25;
 constexpr double kLongWall = 2;  // widths of the door
 
 constexpr double kNear = 0.1;         // of the ends of openings in both lines
@@ -107,13 +108,22 @@ class JambFinder {
                 for (const Point2 end : {open->line.a, open->line.b})
                     if (distance(*foot, end) <= kNear) *foot = end;
         } else if (other->depth <= kThickestShut &&
-                   space->area > kLongWall * width * other->depth) {
+                   space->area > kLongWall * width * other->depth &&
+                   (other->depth < kShelf || runsOn(*space, door, across))) {
             openings_.push_back({other->line, other->wall, false, door.drawn_on});
         } else {
             return;
         }
         addJamb({door.line.a, other->line.a}, door, *other);
         addJamb({door.line.b, other->line.b}, door, *other);
+    }
+
+    /// Returns true if the space behind a door goes on for another width at both of its ends.
+    [[nodiscard]] bool runsOn(const PlanFaces::Group& space, const PlanOpening& door,
+                              Vec2 across) const {
+        const Vec2 along = door.line.b - door.line.a;
+        return faces_.groupAt(door.line.a - along + kInWall * across) == &space &&
+               faces_.groupAt(door.line.b + along + kInWall * across) == &space;
     }
 
     /// Returns a door on the line that overlaps the opposite opening.
