@@ -142,6 +142,22 @@ TEST(SdfImport, SlabsUnderARoomAreItsFloor) {
     EXPECT_EQ(cubes(boxModel("plinth", "0 0 0.05 0 0 0", "2 2 0.1")), 1U);
 }
 
+TEST(SdfImport, PodiumsInSmallRoomsAreNoFloor) {
+    ImportOptions options;
+    options.rooms = RoomChoice::All;
+    // A wall cuts a cell of 2 m x 5.8 m off the room.
+    const std::string rooms = roomAbout() + boxModel("w", "-1.8 0 1 0 0 0", "0.2 6 2");
+    const auto cubes = [&](const std::string& model) {
+        return countOf(readSdf(worldOf(rooms + model), "test.sdf", options, sceneSchemas()),
+                       "cube");
+    };
+    EXPECT_EQ(cubes(boxModel("podium", "-2.9 0 0.075 0 0 0", "2 5.8 0.15")), 1U);
+    // Under the wall, and under a part of the large room.
+    EXPECT_EQ(cubes(boxModel("stage", "-2.4 0 0.05 0 0 0", "3 6 0.1")), 1U);
+    EXPECT_EQ(cubes(boxModel("floor", "-2.9 0 0.05 0 0 0", "2 5.8 0.1")), 0U);
+    EXPECT_EQ(cubes(boxModel("floor", "0 0 0.1 0 0 0", "8 6 0.2")), 0U);
+}
+
 TEST(SdfImport, ModelsStandWhereTheStateOfTheWorldPutsThem) {
     const std::string model = boxModel("m", "0 0 0.5 0 0 0", "1 0.9 1");
     const auto state = [](const std::string& poses) {

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -23,6 +22,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "base/number.h"
+#include "env/environment.h"
 #include "geom/arrangement.h"
 #include "io/exporters.h"
 #include "io/import_records.h"
@@ -388,20 +388,31 @@ class WorldImporter {
         return true;
     }
 
-    /// Returns true for a low slab on which most of a room stands.
+    /// Returns true for a low slab under most of a room, and of each other room that it is under.
+    /// One that lasers scan is under all rooms: a podium may fill a small room.
     [[nodiscard]] bool isFloor(const WorldBlock& block) const {
         constexpr double kSlabTop = 0.2;  // metres
         constexpr double kMost = 0.5;     // of a room
+        constexpr double kEdge = 0.1;     // of the room beyond the wall on which a slab ends
         if (block.top > kSlabTop || block.bottom > kFloorTop) return false;
         const Polygon slab = rectangle(block.center, block.length, block.width, block.heading);
-        return std::ranges::any_of(regions_, [&slab](const PlanRegion& region) {
-            const auto off = [&slab](double sum, const Region& room) {
-                return sum + totalArea(difference(room, {{slab}}));
-            };
-            if (std::abs(signedArea(slab)) < kMost * region.area()) return false;
-            return std::accumulate(region.rooms.begin(), region.rooms.end(), 0.0, off) <
-                   (1 - kMost) * region.area();
-        });
+        const double size = std::abs(signedArea(slab));
+        if (std::ranges::none_of(regions_, [size](const PlanRegion& region) {
+                return size > kMost * region.area();
+            }))
+            return false;
+        const bool is_scanned = block.top >= kScanHeight;
+        bool is_under_room = false;
+        for (const PlanRegion& region : regions_) {
+            double share = 1;
+            for (const Region& room : region.rooms)
+                share -= totalArea(difference(room, {{slab}})) / region.area();
+            if (share > kMost)
+                is_under_room = true;
+            else if (is_scanned || share > kEdge)
+                return false;
+        }
+        return is_under_room;
     }
 
     struct Fence {
