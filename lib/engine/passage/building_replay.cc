@@ -27,7 +27,8 @@ RunInfo recordedInfo(const std::string& folder, const StoreyedDocument& building
         if (reader.next() && reader.time() == 0 && reader.next())
             return {.step = reader.time(), .every = reader.time()};
     }
-    throw FormatError({folder, 0, 0, "holds no moment of a run: nobody moved in it"});
+    throw FormatError(
+        {folder, 0, 0, "holds no moment of a run, and no info.csv tells how long that was"});
 }
 
 std::vector<LiftNames> BuildingRun::Data::liftNames() const {
@@ -61,7 +62,8 @@ void BuildingRun::Data::replay() {
     lift_reader.emplace(options.replay + '/' + kLiftFile, liftNames());
     if (std::all_of(rooms.begin(), rooms.end(),
                     [](const Room& room) { return room.replay->atEnd(); }))
-        throw FormatError({options.replay, 0, 0, "holds no moment of a run: nobody moved in it"});
+        throw FormatError({options.replay, 0, 0,
+                           "holds no moment of a run, and no info.csv tells how long that was"});
     for (std::size_t i = 1; i < rooms.size(); ++i)
         rooms[i].simulation->replay(*rooms[i].replay, false);
     Simulation& leader = *rooms.front().simulation;

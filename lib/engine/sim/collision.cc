@@ -327,10 +327,10 @@ void Traffic::rebuild(std::span<const Motion> motions) {
 }
 
 std::optional<std::size_t> Traffic::hit(std::span<const Move> moves, std::size_t mover,
-                                        double stray) const {
+                                        double farthest) const {
     const Move& move = moves[mover];
     const Box2 box =
-        bounds(Segment2{move.start(), move.end()}).expanded(move.radius + move.to.bulge + stray);
+        bounds(Segment2{move.start(), move.end()}).expanded(move.radius + move.to.bulge + farthest);
     const std::size_t rank = rank_[mover];
     std::optional<std::size_t> first;
     grid_.forEachNear(box, [&](std::size_t other) {

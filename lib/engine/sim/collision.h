@@ -195,10 +195,10 @@ class Traffic {
     /// Builds the index of positions, at which the moves begin.
     void rebuild(std::span<const Motion> motions);
     /// Returns the first mover, in settling order, that this mover's move runs into.
-    /// \param stray metres by which noise may lengthen a move beyond a step at top speed
+    /// \param farthest metres that noise may make a move long; 0: none is longer than at top speed
     /// \pre the moves before it are settled, cancelled or not
     [[nodiscard]] std::optional<std::size_t> hit(std::span<const Move> moves, std::size_t mover,
-                                                 double stray = 0) const;
+                                                 double farthest = 0) const;
     /// Returns the rank in settling order.
     [[nodiscard]] std::size_t rank(std::size_t mover) const { return rank_[mover]; }
     /// Returns a mover's position.

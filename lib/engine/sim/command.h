@@ -94,10 +94,10 @@ struct TimedCommand {
 
 /// Parses lines `TIME ROBOT COMMAND …`: seconds (or with a unit: 500ms), the id of a robot or a
 /// person, a command of the Command System; and `TIME ID ACT KEY=VALUE`, which sets the state of an
-/// actuator (see room_state.h). Lines of
-/// extensions (see script_lines.h) are skipped. `#` begins a comment; empty lines are allowed.
-/// Sorts the result by time, equal times in file order. \throws FormatError with all findings
-/// (file:line:column): bad times, unknown robots and commands, values beyond the robot's limits
+/// actuator (see room_state.h). Lines of extensions (see script_lines.h) are skipped. `#` begins a
+/// comment; empty lines are allowed. Sorts the result by time, equal times in file order.
+/// \throws FormatError with all findings (file:line:column): bad times, unknown robots and
+/// commands, values beyond the robot's limits
 std::vector<TimedCommand> readScript(std::string_view text, const std::string& file,
                                      const World& world);
 

@@ -98,7 +98,7 @@ TEST_F(RecordLines, PeopleHaveATable) {
 /// A change in the step of a frame does not make it due again, nor bumpers felt anew.
 TEST_F(RecordLines, AFrameIsRecordedOnceAlsoIfTheWorldChanges) {
     const Scene scene =
-        room("camera id=c9 at=0,1,1 pixels=8,6 rate=1\nrobot id=p model=pioneer-2dx at=1,1\n");
+        room("camera id=c9 at=0,1,1 pixels=8,6 rate=1\nrobot id=p model=pioneer-2dx at=2.5,-2\n");
     World world(scene, milliseconds(50));
     RecordOptions options;
     options.frame_taker = [&](const FrameJob& job) {

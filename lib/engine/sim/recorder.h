@@ -53,7 +53,7 @@ struct RecordOptions {
     std::function<std::string(const Scene&)> scene_text = {};
     bool odometry = false;  ///< write odometry.csv: it differs from the true poses
     bool noise = false;     ///< of the sensors, from the seed; for info.csv
-    bool readings = true;   ///< of sensors, in scans.jsonl
+    bool readings = true;   ///< of sensors, in scans.jsonl and pictures
     /// Maximum of pictures and depth frames per camera or ranger and simulated second; at higher
     /// rates every second, third, … frame is recorded. 0: no frames.
     double frame_rate = 1;

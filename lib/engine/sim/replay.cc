@@ -41,6 +41,7 @@ Replay::Replay(const std::string& folder, SimTime step) : Replay(folder, std::op
 Replay::Replay(const std::string& folder, std::optional<SimTime> joined_step)
     : folder_(folder), is_joined_(joined_step), reader_(folder) {
     const bool has_moment = reader_.next();
+    has_moments_ = has_moment;
     const auto info = recordedInfo(folder);
     if (!has_moment && !is_joined_ && (!info || info->steps == 0))
         throw FormatError({reader_.name(), 0, 0,
@@ -234,8 +235,10 @@ bool Replay::step(World& world, bool reads) {
 /// Reads the moment of the next step.
 void Replay::readNext(const World& world) {
     is_ahead_ = reader_.next();
+    // A change of the world may have taken the movers out; it is made before the next step.
     const SimTime next = world.time() + step_;
-    is_still_ = !is_ahead_ && world.movers().empty() && next <= end().value_or(SimTime(0));
+    const bool may_lack_movers = !has_moments_ || (changed_ && *changed_ <= next);
+    is_still_ = !is_ahead_ && may_lack_movers && next <= end().value_or(SimTime(0));
 }
 
 std::shared_ptr<const void> Replay::rewind(World& world, const NextScene& beginning) {

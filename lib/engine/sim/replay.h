@@ -40,8 +40,9 @@ class Replay {
     /// Sets all movers to the first poses of the record. \throws FormatError for a mover that the
     /// scene lacks
     void placeAtStart(Scene& scene) const;
-    /// Returns true after the last moment of the record, and behind that, in a world without
-    /// movers, which have moments, after the time to which info.csv says that the run went.
+    /// Returns true after the last moment of the record. A world that had no movers, or lost them
+    /// by a change, has moments no more: it goes on to the time at which info.csv says that the run
+    /// ended.
     [[nodiscard]] bool atEnd() const { return !is_ahead_ && !is_still_; }
     /// Takes the next step of a world that has taken as many steps; false, without a step, at the
     /// end of the record. Collisions are those of events.csv; without it, a mover that begins to
@@ -118,6 +119,7 @@ class Replay {
     std::vector<RunState> start_;
     bool is_late_ = false;             // it lacks the moment of the start
     bool is_ahead_ = false;            // the reader has read the moment of the next step
+    bool has_moments_ = false;         // the record had movers at some time
     bool is_still_ = false;            // it has none, for the world has no movers until the end
     std::vector<RobotStatus> states_;  // of all movers of the world
     std::vector<std::optional<EstimatedPose>> odometries_;  // of all its robots

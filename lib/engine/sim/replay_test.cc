@@ -105,6 +105,25 @@ TEST_F(ReplayTest, GoesOnInARoomWithoutMovers) {
     EXPECT_FALSE(replay.atEnd());
 }
 
+TEST_F(ReplayTest, GoesOnWithMoversThatTheRecordLacks) {
+    const Scene room = scene(kRoom, "laser id=l1 at=1,1\n");
+    World world(room, kStep);
+    {
+        Recorder recorder(folder_.path(), world, {}, 0);
+        for (int i = 0; i < 20; ++i) {
+            world.step();
+            recorder.record(world);
+        }
+        recorder.flush(world);
+    }
+    Replay replay(folder_.path());
+    World again(scene_, kStep);
+    int steps = 0;
+    while (replay.step(again)) ++steps;
+    EXPECT_EQ(steps, 20);
+    EXPECT_EQ(again.status(0).speed, 0);
+}
+
 /// A person that is stopped lowers its limbs: the laser sees that in the run, too.
 TEST_F(ReplayTest, SeesTheLimbsOfThoseThatAreStopped) {
     const Scene room =

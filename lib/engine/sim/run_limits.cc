@@ -63,7 +63,8 @@ RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
             const double pixels = pixelsOf(sensor);
             load.pixels += pixels;
             load.pixel_rate += pixels * rate;
-            if (record != nullptr) recorded_pixels += pixels * std::min(rate, record->frame_rate);
+            if (record != nullptr && record->readings)
+                recorded_pixels += pixels * std::min(rate, record->frame_rate);
         } else {
             const auto rays = static_cast<double>(rayCount(sensor.model));
             load.beams += rays;
@@ -80,8 +81,8 @@ RunLoad loadOf(const Scene& scene, SimTime step, const RecordOptions* record) {
     if (record == nullptr) return load;
     const auto movers = static_cast<double>(scene.robots.size() + scene.people.size());
     load.recorded_bytes = movers * kRow / seconds(std::max(step, record->form.every)) +
-                          load.beam_rate * kRange + echoes * kRange * record->sonar_rate +
-                          recorded_pixels * kPixel;
+                          (record->readings ? load.beam_rate * kRange : 0) +
+                          echoes * kRange * record->sonar_rate + recorded_pixels * kPixel;
     return load;
 }
 

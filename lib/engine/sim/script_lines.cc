@@ -26,7 +26,12 @@ std::vector<MissingLine>& missingLines() {
 
 }  // namespace
 
-void addScriptLines(ScriptLines lines) { kinds().push_back(std::move(lines)); }
+void addScriptLines(ScriptLines lines) {
+    const bool is_known = std::any_of(kinds().begin(), kinds().end(), [&](const ScriptLines& kind) {
+        return kind.words == lines.words;
+    });
+    if (!is_known) kinds().push_back(std::move(lines));
+}
 
 void addMissingScriptLine(std::string_view word, std::string_view extension) {
     missingLines().push_back({word, extension});

@@ -37,8 +37,8 @@ struct ScriptLines {
                                       const World& world) = nullptr;
 };
 
-/// Adds a kind of lines, for the program. Called by one thread before the first script is read, as
-/// is addMissingScriptLine().
+/// Adds a kind of lines, for the program, unless one with these words is known. Called by one
+/// thread before the first script is read, as is addMissingScriptLine().
 void addScriptLines(ScriptLines lines);
 /// States a first word of lines that an extension would read, which this program was built without:
 /// the error about such a line names it. \param word, extension literals

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shut doors of a room, and ways as if some of them were open. Tells why there is no way: "d1 is
-// locked".
+// The shut doors of a room, and ways as if some of them were open. Tells why there is no way:
+// "d1 is locked".
 #pragma once
 
 #include <cstddef>

@@ -223,7 +223,7 @@ struct World::Data {
     std::vector<std::size_t> kept_starts;  // start errors lead to no free position
     std::vector<Move> moves;
     std::optional<double> longest_step;  // while it is valid
-    double stray = 0;                    // by which noise lengthens a move of this step beyond it
+    double farthest = 0;                 // way of a move of this step, with noise; 0 without
     std::vector<Chunk> chunks;
     std::vector<std::size_t> unsettled;  // movers that may collide; kept for its memory
     Traffic traffic;

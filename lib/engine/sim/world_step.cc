@@ -148,7 +148,7 @@ bool World::Data::mayMeet(std::size_t mover) {
     constexpr double kSteps = 32;
     const Move& move = moves[mover];
     if (states[mover].blocked) return true;
-    const double both = move.to.path + *longest_step + stray;
+    const double both = move.to.path + std::max(*longest_step, farthest);
     double room = options.noise ? 0 : std::min(kSteps * both, 2 * both + kMoverSight);
     bool may_meet = false;
     traffic.forEachNear(
@@ -173,9 +173,9 @@ void World::Data::settle() {
             return true;
         });
     };
-    stray = 0;
+    farthest = 0;
     if (options.noise)
-        for (const Move& move : moves) stray = std::max(stray, move.to.path - *longest_step);
+        for (const Move& move : moves) farthest = std::max(farthest, move.to.path);
     std::size_t doubtful = 0;
     for (const Chunk& chunk : chunks) doubtful += chunk.doubtful.size();
     if (doubtful > 2 * kTogether)
@@ -191,7 +191,7 @@ void World::Data::settle() {
     for (const std::size_t mover : unsettled) {
         if (states[mover].blocked) {
             collide({mover, std::nullopt, elements()[*states[mover].blocked].id, time});
-        } else if (const auto other = traffic.hit(moves, mover, stray)) {
+        } else if (const auto other = traffic.hit(moves, mover, farthest)) {
             collide({mover, other, movers[*other].id, time});
         }
         finish(mover, chunks[mover / kTogether]);
