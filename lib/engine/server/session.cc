@@ -322,7 +322,9 @@ void Session::refuse(std::string_view verb, bool first) {
             roles.append(roles.empty() ? "" : " or ").append(role);
         };
         if (request.role == Role::Guest)
-            for (const RoleService* const each : state_->roleServices()) add_role(each->verb());
+            for (const RoleService* const each : state_->roleServices()) {
+                if (each->verb() != guest_verb_) add_role(each->verb());
+            }
         else
             add_role(request.role ? verbOf(*request.role) : "");
     }
@@ -455,8 +457,11 @@ void Session::answerSeek() {
 
 /// Roles of extensions share the requests about sensors if they read some.
 bool Session::isOfRole(const Request& request) const {
+    const bool reads = request.answer == &Session::scanOfGuest ||
+                       request.answer == &Session::streamOfGuest ||
+                       request.answer == &Session::stopOfGuest;
     return request.role.value_or(role_) == role_ &&
-           (request.role != Role::Guest || (guest_ && !guest_->sensors().empty()));
+           (!reads || (guest_ && !guest_->sensors().empty()));
 }
 
 void Session::help(Words /*words*/) {

@@ -25,12 +25,13 @@ RoleService* Session::serviceOf(std::string_view verb) const {
 void Session::takeGuestRole(RoleService& service, Words words) {
     if (words.size() != 2)
         return error(400, {service.verb(), " wants an id: ", service.verb(), " id"});
+    std::string id(words[1]), verb(service.verb());
     auto guest = service.take(words[1], out_);
     if (!guest) return;
     guest_ = std::move(guest);
-    guest_verb_ = service.verb();
+    guest_verb_ = std::move(verb);
     role_ = Role::Guest;
-    id_ = words[1];
+    id_ = std::move(id);
 }
 
 /// Answers a request of the role itself. \returns false if it has no such verb

@@ -169,6 +169,7 @@ std::shared_ptr<const std::string> Session::takeScan() {
     sync();
     if (scan_ && is_stale_ && every_ > 0 && world().period(subject_) % every_ != 0) {
         scan_ = nullptr;  // the next one is due with a later period
+        ++state_->losses().readings;
     } else if (scan_ && is_stale_) {
         ReplyForm form = form_;
         form.stream = true;
