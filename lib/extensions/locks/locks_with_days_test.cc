@@ -178,7 +178,7 @@ TEST(LockedDoors, ShutOnceTheyWereForced) {
     }
 }
 
-/// A row of three rooms with a door between each two, and people of all tags who go about.
+/// A row of three rooms with a door between each two, and people of all tags that go about.
 TEST(LockedDoors, KeepTheirWordInRandomFlats) {
     constexpr int kFlats = 60, kTrips = 3;
     std::mt19937 random(7);

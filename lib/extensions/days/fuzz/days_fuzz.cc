@@ -14,7 +14,7 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
     World& world = room.world();
     days::DayPlan plan = days::readDayPlan(bytes, "run.txt", world);
     for (const days::DayLine& line : plan.lines) {
-        require(world.personNamed(line.person).has_value(), "a day of a person who does not exist");
+        require(world.personNamed(line.person).has_value(), "a day of an unknown person");
         require(!line.actions.empty() && !line.name.empty(), "an activity without action or name");
     }
     Simulation simulation(world, {}, {Clock::Kind::Step, 1}, {});
