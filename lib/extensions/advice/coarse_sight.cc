@@ -121,7 +121,7 @@ double CoarseSight::privateOf(std::span<const Sensor> sensors) const {
 
 namespace {
 
-constexpr std::size_t kMost = 10'000;  // views that are kept
+constexpr std::size_t kMost = 50'000;  // views that are kept
 
 std::tuple<double, double, double> keyOf(const Pose3& pose) {
     return {pose.position.x, pose.position.y, pose.heading.degrees()};

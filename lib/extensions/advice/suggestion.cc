@@ -232,12 +232,12 @@ std::vector<Suggestion> Adviser::turnAndShift(const MeasuredState& now) {
         gain.take(i);
         if (coarse) coarse->count(sensors[i]);
         std::vector<Trial> trials;
-        if (gain.turns(i) && coarse) {
+        if (gain.turns(i) && coarse && !scansSlice(sensors[i])) {
             // Estimates of all whole degrees cost the rays of one place.
             for (int degrees = 1; degrees <= 180; ++degrees)
                 for (const int turned : {degrees, -degrees})
                     if (turned != -180) trials.push_back({i, turned});
-            attempt(trials, turn);
+            attempt(trials, turn, worthwhile);
         } else if (gain.turns(i)) {
             // Steps, then whole degrees about the best one and about the present heading. Other
             // sensors' turns are compared at the end, so that the order of records is of no matter.
