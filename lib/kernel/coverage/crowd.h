@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// People who stand in the way of sight, as bodies of a scene.
+// People that stand in the way of sight, as bodies of a scene.
 //
 // Draws are keyed by seed and frame (base/random.h): crowd k is the same whatever was drawn before.
 //
