@@ -31,13 +31,14 @@ check_limit() {
     esac
 }
 
+size=$(($(stat -L -c %s "$(command -v envc)") / 1000))
 for job in "${jobs[@]}"; do
     rm -f map.png
     $job >out
     expected=$(product)
     threads=1
     # With less than its own size the kernel ends a program before it begins.
-    for limit in 24000 30000 $(seq 40000 2500 110000) $(seq 120000 68000 800000); do
+    for limit in "$size" 30000 $(seq 40000 2500 110000) $(seq 120000 68000 800000); do
         check_limit "$limit" "$job -j $threads" "$expected"
         threads=$((5 - threads))
     done
