@@ -91,7 +91,7 @@ TEST(MeshWalls, WallsAndFurnitureAtAnInnerSurface) {
     };
     EXPECT_NEAR(area_with(4.9, 0, 5.1, 6), 4.9 * 6, 1e-5);       // divides the room
     EXPECT_NEAR(area_with(4.9, -0.1, 5.1, 6.1), 4.9 * 6, 1e-5);  // through its surface
-    EXPECT_NEAR(area_with(4.9, 0, 5.1, 2), 48 - 0.2 * 2, 1e-5);  // a stub
+    EXPECT_NEAR(area_with(4.9, 0, 5.1, 2), 48 - 0.2 * 2, 1e-5);  // a short wall
     EXPECT_NEAR(area_with(7, 5, 8, 6), 48 - 1, 1e-5);            // a box in a corner
     EXPECT_NEAR(area_with(7, 2, 8.05, 3), 48 - 1, 1e-5);         // and one in the surface
 }

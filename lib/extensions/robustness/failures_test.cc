@@ -8,40 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "extensions/robustness/robustness_test.h"
 #include "support/test_scenes.h"
 
 namespace ispace::robustness {
 namespace {
-
-const std::string kMixedRoom =
-    "ispace size=10,8,3\npillar id=p at=1,1\ndesk id=d at=-2,1.5 heading=20\n"
-    "wall from=-1,-4 to=-1,-1 height=3\n"
-    "zone id=door path=-5,-3;-3,-3;-3,-1;-5,-1\nzone id=far at=20,0 size=1,1\n"
-    "laser id=l1 at=-4.9,0 heading=0 range=6 fov=90\n"
-    "laser id=l2 at=4.9,0 heading=180 range=6 fov=120\n"
-    "laser id=l3 at=0,-3.9 heading=90 range=4 fov=180\n"
-    "camera id=c1 at=-4.9,-3.9,2.8 heading=40 tilt=-35 fov=80 pixels=1920,1080\n"
-    "camera id=c2 at=4.9,3.9,2.8 heading=-140 tilt=-35 fov=70 pixels=1280,720\n";
-/// Five receivers below the ceiling.
-const std::string kReceivers = [] {
-    std::string lines;
-    for (int i = 0; i < 5; ++i)
-        lines += "ultrasound id=u" + std::to_string(i) + " at=" + std::to_string(i - 3) + "," +
-                 std::to_string(i % 3 - 1) + ",2.9 tilt=-90 fov=100 range=9\n";
-    return lines;
-}();
-
-CoverageOptions cellsOfTest(bool exact = true) {
-    CoverageOptions options;
-    options.cells = CellSize{0.1};
-    options.exact = exact;
-    return options;
-}
-
-Coverage measuredBy(const Scene& scene, const CoverageOptions& options) {
-    RayScenes worlds(scene.environment);
-    return measureCoverage(scene, worlds, options);
-}
 
 /// Returns the figure without each set of two sensors, or of one, and its minimum.
 double bruteForce(const Scene& scene, const Requirement& figure, std::size_t count,
