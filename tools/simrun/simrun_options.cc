@@ -187,8 +187,9 @@ void SimrunCommand::checkReplay() const {
         (void)outputFormat({}, o.report, {"json", "html", "pdf"});
     }
     if (o.record.empty())
-        for (const char* option : {"--record-readings", "--record-frames", "--record-sonars",
-                                   "--record-every", "--record-columns", "--record-compression"})
+        for (const char* option :
+             {"--record-readings", "--no-record-readings", "--record-frames", "--record-sonars",
+              "--record-every", "--record-columns", "--record-compression"})
             if (line_.given(option))
                 throw UsageError(std::string(option) + " is about a record: give --record DIR");
     if (o.replay.empty()) {
