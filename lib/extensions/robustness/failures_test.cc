@@ -9,10 +9,13 @@
 #include <vector>
 
 #include "extensions/robustness/robustness_test.h"
+#include "support/test_mixed_room.h"
 #include "support/test_scenes.h"
 
 namespace ispace::robustness {
 namespace {
+
+using testing::kMixedRoom;
 
 /// Returns the figure without each set of two sensors, or of one, and its minimum.
 double bruteForce(const Scene& scene, const Requirement& figure, std::size_t count,

@@ -9,11 +9,14 @@
 #include <vector>
 
 #include "extensions/robustness/robustness_test.h"
+#include "support/test_mixed_room.h"
 #include "support/test_scenes.h"
 #include "trace/ray_world.h"
 
 namespace ispace::robustness {
 namespace {
+
+using testing::kMixedRoom;
 
 TEST(Mounting, SpreadsFigures) {
     const Scene scene = sceneOf(kMixedRoom);

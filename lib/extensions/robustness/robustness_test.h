@@ -5,12 +5,10 @@
 #include <string>
 
 #include "coverage/coverage.h"
-#include "support/test_mixed_room.h"
 #include "trace/ray_world.h"
 
 namespace ispace::robustness {
 
-using testing::kMixedRoom;
 /// Five receivers below the ceiling.
 inline const std::string kReceivers = [] {
     std::string lines;
