@@ -25,6 +25,7 @@ for tool in $tools; do
         grep -q "suffix .\.$suffix., wanted \." err || fail "$tool does not name formats: $(cat err)"
     done
     expect_error 2 "$tool" - - "${extra[@]}"
+    grep -q 'stdin cannot be read twice' err || fail "$tool reads stdin twice: $(cat err)"
     # envc joins any number of inputs.
     [ "$tool" = envc ] || expect_error 2 "$tool" a.env b.3dm c.env "${extra[@]}"
 
