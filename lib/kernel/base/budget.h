@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bounds of the work and memory that reading one untrusted input may take. A few bytes can request
+// any amount of work: blocks inserted in a grid, groups that use groups, parts in parts.
+//
+// Work is counted in units, not timed, so the same input is accepted or rejected on every machine.
+// Not thread-safe: one reader owns a budget, and the budgets of its parts name it as `whole`.
+//
+//     Budget budget(bytes.size());
+//     if (!budget.take(count)) throw FormatError({name, line, 0, "repeats " + budget.excess()});
 #pragma once
 
 #include <algorithm>
@@ -17,19 +25,11 @@ struct WorkLimit {
     Budget* whole = nullptr;  ///< pays as well: that of the building the input is part of
 };
 
-/// Bounds the work and memory that reading one input may take.
+/// The units of work that the reader of one input may take.
 ///
-/// A few bytes can request any amount of work: blocks inserted in a grid, groups that use groups,
-/// parts in parts. A reader that repeats elements takes units before it does the work, even for
-/// elements without geometry. A unit is the work of one point, element or record, at most about a
-/// microsecond, or 64 bytes of text that is copied or read again: 20 million units are some 20 s at
-/// most.
-///
-/// Units are counted, not timed, so the same input is accepted or rejected on every machine. Not
-/// thread-safe: one reader owns a budget, and the budgets of its parts name it as `whole`.
-///
-///     Budget budget(bytes.size());
-///     if (!budget.take(count)) throw FormatError({name, line, 0, "repeats " + budget.excess()});
+/// A reader that repeats elements takes units before it does the work, even for elements without
+/// geometry. A unit is the work of one point, element or record, at most about a microsecond, or 64
+/// bytes of text that is copied or read again: 20 million units are some 20 s at most.
 class Budget {
   public:
     static constexpr std::uint64_t kMinValue = 1'000'000;  ///< for any input

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sets of cells of a grid: as bits (CellSet) for unions, differences and counts, as runs
+// (CellParts) for thousands of small parts. Cells are indices; the caller knows their grid
+// (raster/grid.h).
+//
+//     CellSet seen(grid.size());
+//     seen |= view_of_a;
+//     const std::size_t both = countCommon(seen, view_of_b);
 #pragma once
 
 #include <bit>
@@ -14,10 +21,6 @@ namespace ispace {
 /// words at once; a grid of 1 million cells takes 125 kB. crop() drops the empty words at both
 /// ends, which no result shows, so that thousands of small views of a large grid fit in memory.
 /// Const members are thread-safe.
-///
-///     CellSet seen(grid.size());
-///     seen |= view_of_a;
-///     const std::size_t both = countCommon(seen, view_of_b);
 ///
 /// \pre cells passed are < size(), sets of one operation have one size
 class CellSet {

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Patterns of names as shells have them, matched without a look at any file.
+//
+// Patterns are untrusted: a match takes at most (name bytes) * (1 + pattern bytes / 64) word
+// operations, however many stars there are, as bits of words are the states of an automaton (R.
+// Baeza-Yates, G. Gonnet, A new approach to text searching, 1992; S. Wu, U. Manber, Fast text
+// searching allowing errors, 1992).
+//
+//     const bool is_hall = Glob("hall-[0-9]*").matches("hall-2-east");  // true
 #pragma once
 
 #include <cstddef>
@@ -13,13 +21,8 @@ namespace ispace {
 /// (with `[:alpha:]` and other classes), `\` the next byte literally. A name also matches a pattern
 /// with the same text, and an unclosed bracket matches itself. Case counts.
 ///
-/// Patterns are untrusted: a match takes at most (name bytes) * (1 + pattern bytes / 64) word
-/// operations, however many stars there are, as bits of words are the states of an automaton
-/// (R. Baeza-Yates, G. Gonnet, A new approach to text searching, 1992; S. Wu, U. Manber, Fast text
-/// searching allowing errors, 1992). A pattern takes 256 words for each 64 bytes. Thread-safe once
-/// built. Bytes, not characters: `?` matches one byte of UTF-8.
-///
-///     const bool is_hall = Glob("hall-[0-9]*").matches("hall-2-east");  // true
+/// Bytes, not characters: `?` matches one byte of UTF-8. A pattern with special bytes takes 256
+/// words for each 64 of its bytes. Thread-safe once built.
 class Glob {
   public:
     Glob() = default;  ///< matches the empty name

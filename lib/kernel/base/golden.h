@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Compares a text with the expected one, as golden-diff(1) does: words and blanks must agree byte
+// by byte, numbers within a tolerance. Pure functions, O(bytes).
+//
+//     const std::string found = textDifference(withoutHistory(wanted), withoutHistory(text), {});
+//     if (!found.empty()) fail(found);  // names the line
 #pragma once
 
 #include <string>

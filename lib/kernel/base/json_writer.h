@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes JSON, and compares two texts of it. Equal values give equal bytes, in any locale.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Records the files that readers looked for and did not find. Programs that cache a result, or wait
+// for changes of its inputs, need their names: the result changes once such a file appears.
+//
+//     const MissedFiles missed;
+//     const Document room = read("world.sdf");
+//     watch(missed.names());
 #pragma once
 
 #include <set>
@@ -8,12 +14,7 @@ namespace ispace {
 
 /// The files that readers of this thread look for in vain while this lives: if one appears later,
 /// they may read it instead of another. Scopes may nest; a name belongs to all of them. Each thread
-/// has its scopes: readers that start threads lose the names that those look for. A watcher reads
-/// an input again when one of the names appears:
-///
-///     const MissedFiles missed;
-///     const Document room = read("world.sdf");
-///     watch(missed.names());
+/// has its scopes: readers that start threads lose the names that those look for.
 class MissedFiles {
   public:
     MissedFiles();

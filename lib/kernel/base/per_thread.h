@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Scratch memory of functions that several threads call very often.
+//
+//     struct Scratch;  // the tag
+//     std::vector<double>& ranges = perThread<std::vector<double>, Scratch>();
+//     ranges.clear();
 #pragma once
 
 #include <pthread.h>
@@ -15,10 +20,6 @@ namespace ispace {
 /// value keeps its contents from the last use; callers clear it. A call inside of another with the
 /// same T and Tag gets the same object. Costs one look-up, some nanoseconds; the system allows some
 /// 1000 keys (PTHREAD_KEYS_MAX), one for each T and Tag.
-///
-///     struct Scratch;  // the tag
-///     std::vector<double>& ranges = perThread<std::vector<double>, Scratch>();
-///     ranges.clear();
 ///
 /// \throws std::bad_alloc, std::system_error if there are no more keys
 template <typename T, typename Tag>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Divides a job among machines that share no memory: each is told its number and the number of all,
+// and computes the same division.
+//
+//     const auto [first, end] = parseShard("3/8").blockOf(100);  // 26, 39: the third of 8 blocks
 #pragma once
 
 #include <cstdint>
@@ -8,8 +12,6 @@ namespace ispace {
 
 /// One of `count` shares of a job, numbered from 1: "3/8". Its work depends only on these two
 /// numbers and the units of the job, so shards run on any machines, in any order, and again.
-///
-///     parseShard("3/8").blockOf(100);  // {26, 39}: 13 units, as in the first four shards
 struct Shard {
     int index = 1, count = 1;
 

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Vector code without intrinsics: loops that the compiler vectorises for each generation of the
+// processor, and elementary functions for them. Results are the same bits on every processor, in
+// vectors of any width, since the tree is compiled without contraction to fused operations.
+//
+//     ISPACE_SIMD_CLONES void rootsOf(float* values, std::size_t count) {
+//         for (std::size_t i = 0; i < count; ++i) values[i] = simd::squareRoot(values[i]);
+//     }
 #pragma once
 
 #include <bit>
@@ -7,9 +14,7 @@
 
 /// Put before a function, compiles it for several generations of the processor; the program runs
 /// the fastest version that the machine supports. Its loops must be plain enough for the compiler
-/// to vectorise, and the functions it calls must be inlined (ISPACE_INLINE) to profit. Results do
-/// not depend on the version: IEEE arithmetic is the same in vectors of any width, and operations
-/// are not contracted.
+/// to vectorise, and the functions it calls must be inlined (ISPACE_INLINE) to profit.
 ///
 /// Expands to no attribute where resolvers do not work (other processors and C
 /// libraries, Clang, sanitizers) or the compiler does not know those generations (GCC before 12).
@@ -25,13 +30,9 @@
 #define ISPACE_INLINE [[gnu::always_inline]] inline
 
 /// Elementary functions of float for loops that the compiler vectorises. They use additions,
-/// multiplications and bit operations only, so they give the same bits on any processor and in
-/// vectors of any width. The polynomials of logarithm, sine and cosine are from S. L. Moshier's
-/// Cephes. Error bounds stand beside each function; simd_test compares them with double.
-///
-///     ISPACE_SIMD_CLONES void rootsOf(float* values, std::size_t count) {
-///         for (std::size_t i = 0; i < count; ++i) values[i] = simd::squareRoot(values[i]);
-///     }
+/// multiplications and bit operations only, which IEEE 754 defines to the bit. The polynomials of
+/// logarithm, sine and cosine are from S. L. Moshier's Cephes. Error bounds stand beside each
+/// function; simd_test compares them with double.
 ///
 /// Arguments outside of the stated ranges give wrong numbers, without traps.
 namespace ispace::simd {

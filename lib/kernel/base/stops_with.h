@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The progress of a search within a search: silent, and stopped with the whole.
+//
+//     StopsWith inner(progress);
+//     const auto best = improve(start, inner);  // returns early after a signal
 #pragma once
 
 #include <cstdint>
@@ -10,9 +14,6 @@ namespace ispace {
 
 /// Shows no progress, and says stop when another one does: of searches within a search, which count
 /// other units than the whole. Thread-safe as stopped() of the other is.
-///
-///     StopsWith inner(progress);
-///     const auto best = improve(start, inner);  // returns early after a signal
 class StopsWith final : public Progress {
   public:
     /// Stores the reference. \pre `whole` outlives this
