@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Updates the view of a sensor after a body was added, removed or moved: only cells in the shadows
+// of the changed bodies are tested again. The results are those of computing the view anew
+// (cellsOnPlane). Deterministic; const members and functions are thread-safe. Metres.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Decides for boxes of the plane at depth 1, x right and y down, whether a distorting pinhole sees
+// all or no part of them; HeldViews tests whole cells of a floor by it. Lenses that distort by the
+// angle to the axis alone have PictureTable.
+//
+//     const Interval inside = DistortedPicture(camera).margin({-0.1, 0.1}, {0.2, 0.4});
+//     if (inside.low > 0) addAll(box);  // else if (inside.high >= 0) split it
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Tests points and rectangles against up to 64 views from one position at once: candidates of
+// arrange(1) look from one site in many directions.
 #pragma once
 
 #include <cstddef>

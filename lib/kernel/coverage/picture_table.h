@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A table of a lens in place of its formula, for views that test millions of directions.
 #pragma once
 
 #include <algorithm>

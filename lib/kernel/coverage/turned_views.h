@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A table of the floor about a sensor's foot, by which all sites of a lattice share the work of
+// deciding which headings look at a cell.
+//
+//     const TurnedViews turned(ahead, headings, plane, reach);  // once for a height, tilt and roll
+//     std::vector<const HeldViews::Verdict*> row(columns);
+//     turned.find(x, cell, y, row);                             // at each site, for each row
+//     for (const HeldViews::Verdict* verdict : row) use(verdict->held, verdict->unsure);
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The visible area of one sensor, as exact curves and as cells of a grid: the two ways in which
+// coverage.h computes its figures. Metres, in the frame of the environment.
 #pragma once
 
 #include <limits>
