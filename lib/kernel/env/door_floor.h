@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The floor in front of doors as outlines: zones around doors (zone.h), and the floor where people
+// who come in face a camera. Metres, in the frame of the environment.
+//
+//     const DoorFloor floor(environment);
+//     for (const Doorway& door : doorwaysOf(environment)) draw(floor.around(door, 1.5));
 #pragma once
 
 #include <string>
@@ -17,9 +22,6 @@ namespace ispace {
 /// does not. Of walls that are drawn by their faces, as those of IFC, the opening reaches from face
 /// to face. Doors in the walls, open or shut, hide nothing; windows do, and so do walls whose
 /// lower edge is below the knee, however low they are.
-///
-///     const DoorFloor floor(environment);
-///     for (const Doorway& door : doorwaysOf(environment)) draw(floor.around(door, 1.5));
 class DoorFloor {
   public:
     /// O(n log n) in the walls.

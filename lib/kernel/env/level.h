@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The room as a level sensor meets it: lines, solids and free floor at one height above the floor,
+// and the views there.
+//
+//     const std::shared_ptr<const Level> level = room.level(0.3);
+//     VisibleRegion view;
+//     if (level->isFree({2, 1})) level->query({2, 1}, 8, view);
 #pragma once
 
 #include <limits>
@@ -22,9 +28,6 @@ namespace ispace {
 /// Point queries take O(log n), typically; sides are exact, distances round. Views are those of
 /// VisibilityMap. All members are thread-safe, and results do not depend on which thread computed a
 /// part.
-///
-///     VisibleRegion view;
-///     room.level(0.3)->query({2, 1}, 8, view);
 class Level {
   public:
     [[nodiscard]] double height() const { return height_; }

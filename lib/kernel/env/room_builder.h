@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Inside lib/kernel/env: builds the parts of an Environment from its records, and those of an
+// edited one from the parts before. Several tasks share the work; parts and findings are the same
+// for any number of threads.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A hash table of points, for the graphs of lines whose ends are equal points, as those of drawings
+// are.
 #pragma once
 
 #include <bit>

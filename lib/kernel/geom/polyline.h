@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Thins lines of many points, such as the borders of maps and of traced plans.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Outlines that many results share without copies: views, what they cover together, and overlays.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Encodes pictures as files, row by row from the top. The same samples give the same bytes: files
+// contain no time and no program name. Every PNG of ispace is written here, by libpng or
+// libdeflate, with settings for its content: fast, and about as small as with libpng's own choice
+// of filters, which takes several times as long. Functions are thread-safe, and single-threaded.
+//
+//     writeAll("view.png", pngOfRgb(640, 480, toSrgb8(picture)));
 #pragma once
 
 #include <cstddef>
@@ -7,13 +13,6 @@
 #include <string>
 
 namespace ispace {
-
-// Encodes pictures as files, row by row from the top. The same samples give the same bytes: files
-// contain no time and no program name. Every PNG of ispace is written here, by libpng or
-// libdeflate, with settings for its content: fast, and about as small as with libpng's own choice
-// of filters, which takes several times as long. Functions are thread-safe, and single-threaded.
-//
-//     writeAll("view.png", pngOfRgb(640, 480, toSrgb8(picture)));
 
 /// Creates an 8-bit PNG of a camera picture: shades and noise, in which neighbours are similar and
 /// patterns do not repeat. Red, green and blue bytes.

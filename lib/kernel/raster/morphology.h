@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Morphology of sets of cells (J. Serra, Image Analysis and Mathematical Morphology, 1982); sets do
+// not extend beyond the grid. All functions take O(cells), whatever the size of the square, and are
+// pure: thread-safe, exact in whole cells.
+//
+//     const MapCells wide = opened(free, 6);         // passages of six cells and more
+//     const CellIndex middle = widestPlace(wide);
 #pragma once
 
 #include <vector>
@@ -6,13 +12,6 @@
 #include "raster/cells.h"
 
 namespace ispace {
-
-// Morphology of sets of cells (J. Serra, Image Analysis and Mathematical Morphology, 1982); sets do
-// not extend beyond the grid. All functions take O(cells), whatever the size of the square, and are
-// pure: thread-safe, exact in whole cells.
-//
-//     const MapCells wide = opened(free, 6);         // passages of six cells and more
-//     const CellIndex middle = widestPlace(wide);
 
 /// Returns the union of all squares of `side` cells that lie in the set.
 /// \pre side >= 1
