@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pictures of a scene's cameras, with labels and depths by pixel, and their files: PNG, CSV, rgb24
+// and YUV4MPEG2.
+//
+//     const Photographer photographer(scene, {.samples = 16, .labels = true});
+//     const Photo photo = photographer.take(scene.sensors[0], scene.sensors[0].pose, 0);
+//     writeAll("view.labels.png", labelPng(scene.sensors[0].as<Camera>(), photo));
 #pragma once
 
 #include <cstdint>

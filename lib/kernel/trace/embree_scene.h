@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/kernel/trace: rays against triangles and round bodies that do not move, by Embree.
+//
+//     const EmbreeScene built(soup, kRayEpsilon, 0);
+//     built.cast({2, 1, 0.3}, directions, 8, {ranges, {}});  // metres; +infinity without return
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/kernel/trace: the surfaces of an Embree scene in doubles. Decides hits that
+// Embree's float32 proposes.
 #pragma once
 
 #include <array>

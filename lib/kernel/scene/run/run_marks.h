@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The events of recorded runs that a viewer's time line shows. A read holds one line at a time, and
+// all marks of the records.
+//
+//     for (const RunMark& mark : recordedMarks({"run1", "run2"})) draw(mark.time, mark.kind);
 #pragma once
 
 #include <cstddef>

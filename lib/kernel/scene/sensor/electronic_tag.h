@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Electronic tags of people, robots and things: one list that RFID readers and UWB anchors share.
+// Metres, in the frame of the room.
 #pragma once
 
 #include <cstddef>

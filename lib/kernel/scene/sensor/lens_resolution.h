@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// How finely a camera's lens resolves each direction, in pixels a radian and pixels a metre; bounds
+// of it by interval arithmetic, for regions of a floor. Pure functions of the camera: thread-safe,
+// at() is O(1).
+//
+//     const LensResolution lens(camera);
+//     const double at_five_metres = lens.at({1, 0, 0}) / 5;  // pixels a metre, straight ahead
 #pragma once
 
 #include <array>

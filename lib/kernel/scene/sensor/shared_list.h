@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lists that sensors of one kind share: a scene of a thousand light meters stores its lamps once.
+//
+//     const SharedList<Light> lights(std::move(found));  // of the scene
+//     for (Lux& lux : meters) lux.lights = lights;      // one counter each
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Writes MCAP files, the container of robotics recordings, by the specification at mcap.dev. Times
+// are nanoseconds. Each file is one thread's; bytes go to a sink, so files may be pipes.
+//
+//     McapWriter file(write, "ros2", "cdr", rosSchemas(), {{0, "/tf"}});
+//     std::string message;
+//     appendMcapMessage(message, 0, 1, 2'000'000'000, bytes);  // channel 0, after two seconds
+//     file.add(message);
+//     file.finish();
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Makes an MCAP file a bag of rosbag2, the recorder of ROS 2: channels with qualities of service,
+// and the metadata beside the file. Pure functions; the format is that of rosbag2's version 5.
 #pragma once
 
 #include <cstddef>
