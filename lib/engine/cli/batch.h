@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Options and loops of tools that do a list of jobs, or a share of one job, in a process: --batch,
+// --shard, --merge, --resume and --cache. Output and messages come in the order of the list, so
+// they are the same for any number of threads; a job that fails stops no other.
+//
+//     runBatch({"coverage", options.common, options.batch, options.command},
+//              [&](const BatchJob& job, const CommonOptions& common, JobOutcome& outcome) {
+//                  JsonWriter line = jobLine("coverage", job);
+//                  outcome.line = line.key("area").value(areaOf(job)).endObject().take() + '\n';
+//              });
 #pragma once
 
 #include <cstddef>

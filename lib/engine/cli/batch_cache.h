@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/engine/cli: results of a list's jobs that the next run reuses. SHA-256 of their
+// inputs decides, so a file that was only touched counts as unchanged; outcomes stay on disk.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The main function of all tools, alone or as a server of jobs.
+//
+//     return runTool("coverage", argc, argv, [](int count, char** words) {
+//         cover(parseCoverageOptions(count, words));
+//     });
 #pragma once
 
 #include <functional>

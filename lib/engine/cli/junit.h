@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Verdicts for CI servers: the file of --junit, written with the outcome or with the error.
+//
+//     JunitFile junit("coverage", options.junit);
+//     junit.during(options.operands, [&] { junit.write("room.env", judge(options)); });
 #pragma once
 
 #include <chrono>

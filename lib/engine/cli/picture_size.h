@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The value of --size, wherever a tool draws a picture.
 #pragma once
 
 #include <string>

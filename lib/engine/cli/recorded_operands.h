@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Operands of tools that read a recorded run: its scene stands in for those left out.
 #pragma once
 
 #include <string>

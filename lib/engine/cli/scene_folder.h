@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The fence around --load-folder of simrun(1): rooms, layouts and their files come from one folder
+// when clients name them.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// XML of untrusted files, SDF and SVG, with lines for messages. O(bytes).
+//
+//     const XmlFile xml(bytes, "house.sdf");
+//     if (!xml.root().child("world")) xml.fail(xml.root(), "no `world`");
 #pragma once
 
 #include <cstddef>
@@ -12,9 +16,6 @@ namespace ispace {
 /// A parsed XML file in UTF-8, with the line of each node. Neither entities nor other documents are
 /// fetched, so no file can make it read another one (XXE) or grow (entity expansion). Not movable:
 /// its nodes point into it.
-///
-///     const XmlFile xml(bytes, "house.sdf");
-///     if (!xml.root().child("world")) xml.fail(xml.root(), "no `world`");
 class XmlFile {
   public:
     /// \param name for messages, as the user named it \throws FormatError with the line: bad XML

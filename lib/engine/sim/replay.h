@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Recorded runs as worlds that move: for viewers, judges and sensors that the run did not have. The
+// same record and scene give the same readings, whichever way seek() comes to a moment. A replay
+// holds one moment of the record and reads on; seeking back reads it from the beginning. For one
+// thread at a time, except preparation().
+//
+//     Replay replay("run1");
+//     replay.placeAtStart(scene);
+//     World world(scene, replay.stepLength());
+//     while (replay.step(world)) draw(world.status(0).pose);
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Further layouts beside the best one, for people to choose from.
+//
+//     const NearChoices same = [](const Choice& a, const Choice& b) { return a == b; };
+//     const auto others = alternativesTo(problem, result.best, same, 3, options, progress);
 #pragma once
 
 #include <cstddef>
@@ -28,8 +32,6 @@ bool differs(const Solution& solution, const Solution& other, const NearChoices&
 /// in a part of the split, which is skipped. Runs one search for each sensor of each solution, and
 /// again where a solution repeats an earlier one. Returns those found if progress says stop.
 /// Deterministic for any number of threads otherwise.
-///
-///     const auto others = alternativesTo(problem, result.best, are_near, 3, options, progress);
 std::vector<Solution> alternativesTo(const Problem& problem, const Solution& best,
                                      const NearChoices& are_near, std::size_t count,
                                      const SearchOptions& options, Progress& progress);

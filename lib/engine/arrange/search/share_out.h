@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Divides sensors among parts of a site that are searched alone (search_parts.h), with a bound for
+// the whole.
 #pragma once
 
 #include <span>
