@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# All JSON of the tools, over all scenes and in all golden cases, matches share/schemas: no undescribed key, and none
+# All JSON of the tools, over all scenes and in all golden cases, matches the schemas of the build: no undescribed key, and none
 # missing.
 . "$(dirname "$0")/common.sh"
 
 python3 -c 'from jsonschema import Draft202012Validator' 2>/dev/null || skip "no python3-jsonschema"
 /usr/bin/python3 -c 'import yaml' 2>/dev/null || skip "no python3-yaml"
 validate="$source_dir/tests/schemas/validate.py"
-schemas=$source_dir/share/schemas
+schemas=$binary_dir/share/schemas
 python3 "$validate" --self-test "$schemas" || fail "the schemas themselves"
 
 # Everything that tools say aside is for the other tests.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""validate.py SCHEMAS FILE...: validates JSON of the tools by share/schemas.
+"""validate.py SCHEMAS FILE...: validates JSON of the tools by the schemas of a build.
 
 A FILE is one object, or lines of objects of which the first has `schema`. Of a golden case (.out) it reads only
 such an object, and the lines that follow it. validate.py --self-test SCHEMAS: every key is described, and an
@@ -9,7 +9,7 @@ undescribed one fails.
 
 import copy
 import json
-import os
+import pathlib
 import sys
 
 from jsonschema import Draft202012Validator
@@ -17,9 +17,8 @@ from jsonschema import Draft202012Validator
 
 def load(folder):
     validators = {}
-    for name in sorted(os.listdir(folder)):
-        with open(os.path.join(folder, name), encoding="utf-8") as file:
-            schema = json.load(file)
+    for path in sorted(pathlib.Path(folder).glob("*.json")):
+        schema = json.loads(path.read_text(encoding="utf-8"))
         Draft202012Validator.check_schema(schema)
         validators[schema["title"]] = Draft202012Validator(schema)
     return validators

@@ -17,7 +17,7 @@ done
 [ -s moved/share/man/man7/ispace-protocol.7 ] || fail "no man page of the protocol"
 [ -s moved/share/man/man7/ispace-wire.7 ] || fail "no man page of device ports"
 [ -s moved/share/man/man7/ispace-stability.7 ] || fail "no man page of what is stable"
-for schema in "$source_dir"/share/schemas/*.json; do
+for schema in "$binary_dir"/share/schemas/*.json; do
     cmp "$schema" "moved/share/ispace/schemas/${schema##*/}" || fail "not installed: $schema"
 done
 if command -v man >/dev/null; then

@@ -104,9 +104,9 @@ if command -v groff >/dev/null; then
     [ ! -s groff.err ] || fail "ispace-stability: $(cat groff.err)"
 fi
 promised() { plain "$1" | sed -n '/^\.SS JSON/,/^\.SS CSV/p' | sed -n 's/^\.B \(ispace-.*\/[0-9]*\|GeoJSON of .*\)$/\1/p' | LC_ALL=C sort; }
-sed -n 's/^  "title": "\(.*\)",$/\1/p' "$source_dir"/share/schemas/*.json | LC_ALL=C sort >schemas
-[ "$(wc -l <schemas)" -eq "$(ls "$source_dir"/share/schemas/*.json | wc -l)" ] || fail "titles of schemas: $(cat schemas)"
-promised "$page" | diff schemas - || fail "share/schemas (<) and ispace-stability (>) differ"
+sed -n 's/^  "title": "\(.*\)",$/\1/p' "$binary_dir"/share/schemas/*.json | LC_ALL=C sort >schemas
+[ "$(wc -l <schemas)" -eq "$(ls "$binary_dir"/share/schemas/*.json | wc -l)" ] || fail "titles of schemas: $(cat schemas)"
+promised "$page" | diff schemas - || fail "schemas of the build (<) and ispace-stability (>) differ"
 sed '/ispace.-scan/d' "$page" >without_scan
 ! promised without_scan | diff -q schemas - >/dev/null || fail "self-test: a schema that is not promised passes"
 

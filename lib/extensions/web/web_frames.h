@@ -34,13 +34,13 @@ struct WebSceneFacts {
     std::function<std::vector<PlannedPath>()> planned = {};
 };
 
-/// Writes the static data of a scene for browsers, see share/schemas/web-scene.json: the plan (see
+/// Writes the static data of a scene for browsers, see schemas/web-scene.json: the plan (see
 /// writePlan), movers and their sizes, sensors, colours. \param version its name in state frames
 std::string webScene(const Scene& scene, std::int64_t version, const WebSceneFacts& facts);
 
 /// The state of the world for browsers, formatted once for all of them.
 ///
-/// A frame is a JSON object, see share/schemas/web-frame.json: poses of movers, in millimetres and
+/// A frame is a JSON object, see schemas/web-frame.json: poses of movers, in millimetres and
 /// hundredths of degrees, their ways, and sensor readings. Frames count from 1. A client with the
 /// previous frame receives the readings since then (or slightly earlier) and the ways that have
 /// changed; other clients receive the newest reading of each sensor and all ways. If readings are
