@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Finds changes of one room that would help, each with its gain: sensors to add, turn, shift,
+// replace or remove, and furniture to move.
+//
+//     SuggestOptions options{.most = 3, .measure = measure};
+//     for (const Suggestion& one : suggestChanges(scene, coverage, options, devices, progress))
+//         print(one.text, one.gained);  // "turn l1 by 35 degrees", m2
 #pragma once
 
 #include <cstddef>

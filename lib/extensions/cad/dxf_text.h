@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Names in DXF files, which are in UTF-8 or in one of many code pages.
+//
+//     DxfText text;
+//     text.setVersion("AC1015");
+//     text.setCodePage("ANSI_1252");
+//     for (const std::string& name : names) text.consider(name);
+//     const std::string layer = text.decoded("W\xE4nde");  // "Wände"
 #pragma once
 
 #include <map>

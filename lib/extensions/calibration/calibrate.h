@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The option --calibrate of envc, and the formats of logs that envc reads as rooms.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Outcomes of rules of cameras in words: for reports of coverage and arrange, as a table and as
+// members of JSON. A text names the rule as the option gives it, and the area or share that
+// decides.
 #pragma once
 
 #include <span>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rules of facing for searches by cells: arrange counts a cell of such a zone as covered only by
+// cameras that see faces there.
 #pragma once
 
 #include <span>

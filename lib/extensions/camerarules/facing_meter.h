@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Rules of facing for searches that move one camera after another, as those of suggestions.
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The option --vector of simrun, which steps many worlds for a learner.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The light on a spot, in lux, as a light meter reports it. The light of a panel is an integral
+// along its contour (J. H. Lambert, Photometria, 1760). Deterministic and thread-safe; O(lamps),
+// with rays to 16 points of each panel in front of the meter.
 #pragma once
 
 #include "extensions/luxes/lux.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The level of sound at a microphone, in dB of sound pressure (SPL). Deterministic, noise included,
+// and thread-safe; O(speakers), each with rays for the walls between.
 #pragma once
 
 #include "extensions/microphones/microphone.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Motes by their places, for radios that hear the nearest ones: a search visits few of thousands.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The report of a mote: the light on it, and the neighbours in its radio's reach. Deterministic and
+// thread-safe.
 #pragma once
 
 #include <string>

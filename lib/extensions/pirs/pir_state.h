@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The output of passive infrared sensors: on while people move in sight, and for a hold time after.
+// Thread-safe; noise depends on its key alone, never on the order of calls.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The tags that an RFID reader lists in one round. Thread-safe; noise depends on its key alone,
+// never on the order of calls.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Trips of robots as actions of ROS 2, for nodes over DDS. For the world's thread.
 #pragma once
 
 #include <array>

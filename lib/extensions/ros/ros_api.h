@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The services of rosapi, for clients of rosbridge that list topics, services and types.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Topics of ROS in simrun: over WebSockets, over DDS, and in a file.
 #pragma once
 
 #include <memory>

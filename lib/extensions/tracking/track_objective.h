@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The objective track of arrange: least loss of people by a tracker.
 #pragma once
 
 #include <memory>

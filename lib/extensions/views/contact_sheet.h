@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The page of scan --view with several views: their pictures, with names.
 #pragma once
 
 #include <string>

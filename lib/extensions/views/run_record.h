@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A recorded run as poses at any time, for pictures of it. Seconds and metres; apply() looks at all
+// moments up to the time.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Layers of pictures of a room: fields of view and beams, coloured floor, and the tops of walls.
 #pragma once
 
 #include <cstddef>

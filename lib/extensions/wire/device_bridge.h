@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The ports of --p2os, --scip and their kin: connects the protocols of devices to a run.
 #pragma once
 
 #include <list>

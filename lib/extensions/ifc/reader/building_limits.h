@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Time and memory of the confined program that reads buildings, by the size of the file;
+// base/confined.h enforces them.
 #pragma once
 
 #include <algorithm>

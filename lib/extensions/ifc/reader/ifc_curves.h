@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/extensions/ifc/reader: curves and profiles of IFC as points, arcs as chords.
+// Metres.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/extensions/ifc/reader: coordinates, units and placements of IFC, and the relations
+// of its elements. Frames are in metres and radians, whatever the units of the file.
 #pragma once
 
 #include <stdexcept>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/extensions/ifc/reader: the plan of shapes, by level cuts and boxes. Metres, in the
+// frame of the shape.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/extensions/ifc/reader: the bodies of products as faces, with volumes to subtract.
+// Metres. Mapped shapes are read once and kept, up to a number of corners.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to lib/extensions/ifc/reader: STEP files (ISO 10303-21), the text form of IFC, as
+// instances by number. Values are views of the file's bytes, which outlive them.
+//
+//     const StepFile file(bytes);
+//     for (const StepId wall : file.ofType("IFCWALL")) {
+//         const std::string name = file.read(wall)[2].text();
+//     }
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The access rule of DDS: a filter of the kernel in front of Cyclone's sockets.
 #pragma once
 
 #include <span>
