@@ -4,7 +4,7 @@
 
 Each option of each tool runs on a room alone, on the same room as the only storey of a building, and as one of two
 storeys under --storey. Exit status, messages, standard output and all files are equal but for the names of storeys.
-The options are those that the tools print: one without a row in options.py fails this test.
+The options are those that the tools print: one without a row fails this test.
 
     one_room.py --tools FOLDER [--only TOOL[:--OPTION]] [--keep FOLDER] [--jobs N]
 """
@@ -165,7 +165,7 @@ def main():
             if arguments.only and arguments.only not in (tool, f"{tool}:{option}"):
                 continue
             if option not in known:
-                print(f"{tool} {option}: no row in options.py")
+                print(f"{tool} {option}: no row in options.py or in site_rows.py of its extension")
                 faults += 1
             elif isinstance(known[option], rows.Exempt):
                 exempt += 1

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A row for each option of each tool: words with which a command of the tool runs on room.env.
 
-A row that begins with ! stands alone; the others follow the tool's base command.
+A row that begins with ! stands alone; the others follow the tool's base command. An extension has the rows of its
+options in lib/extensions/NAME/site_rows.py: OPTIONS and, where they need them, FILES and BEFORE as here.
 """
+import pathlib
+import runpy
 import struct
 import zlib
 
-
-class Exempt:
-    """An option that this test cannot run, and why."""
-
-    def __init__(self, why):
-        self.why = why
-
+from words import COARSE, Exempt, LASERS, MESH, OUT, PLAN, RECORD, RUN, SENSOR, TIMES
 
 ROOM = """#env 1
 ispace id=hall at=0,0 size=6,4 height=3 ceiling=yes
@@ -54,8 +51,6 @@ FILES = {
     "lay.3dm": LAYOUT,
     "fixed.3dm": "".join(line for line in LAYOUT.splitlines(True) if "r1" not in line),
     "other.3dm": LAYOUT.replace("heading=45", "heading=80"),
-    "robot.3dm": "#3dm 1\nrobot id=r1 model=pioneer-2dx at=-0.5,0.9\nlaser id=l model=urg-04lx on=r1 at=0.1,0,0.2\n",
-    "projector.3dm": "#3dm 1\nprojector id=beam model=v-1100 at=0.2,1.9 height=1.2 heading=-90\n",
     "logo.png": png(),
     "prices.csv": "item,price EUR\nurg-04lx,1500\ndome-2.8-1080p,200\n",
     "places.csv": "-2,0,0\n0,1,90\n2.5,-1,180\n1.5,1.5,200\n",
@@ -63,13 +58,9 @@ FILES = {
     "list": "room.env lay.3dm\nroom.env other.3dm\n",
     "arranged": "room.env\n",
     "drive.txt": "0 r1 FORWARD 0.3\n1 r1 STOP\n",
-    "tracks.csv": "t,track,x,y\n0,1,-2,1.5\n0.5,1,-1.6,1.5\n1,1,-1.2,1.5\n",
-    "task.yaml": "step: 0.1\n",
     "other.env": ROOM.replace("id=crate at=2,-1.2", "id=crate at=1.6,-1.4"),
 }
 
-COARSE = "--cell 0.4 --candidates 1,1,4"
-RUN = "room.env lay.3dm --clock fast --until 1 --listen 127.0.0.1:0"
 BASES = {
     "envc": "room.env",
     "arrange": f"room.env {COARSE} --optimize greedy",
@@ -77,33 +68,15 @@ BASES = {
     "coverage": "room.env lay.3dm --cell 0.2",
     "simrun": RUN,
 }
-RECORD = f"simrun {RUN} --no-record-readings --record rec"
 BEFORE = {
-    ("arrange", "--presence"): "simrun room.env lay.3dm --clock fast --until 4 --listen 127.0.0.1:0 --no-record-readings --record rec",
     ("arrange", "--fixed"): "",
     ("arrange", "--merge"): f"arrange room.env {COARSE} --sensor laser:2 --optimize greedy --shard 1/2 -o a.part"
     f" && arrange room.env {COARSE} --sensor laser:2 --optimize greedy --shard 2/2 -o b.part",
-    ("arrange", "--verify"): "arrange room.env --sensor laser:1 --proof poses --time-limit 2 --certificate proof"
-    " -o out.3dm",
     ("scan", "--merge"): "scan room.env lay.3dm --select l* --frames 4 --shard 1/2 --to jsonl -o a.part"
     " && scan room.env lay.3dm --select l* --frames 4 --shard 2/2 --to jsonl -o b.part",
     ("scan", "--run"): f"simrun {RUN} --record rec --record-frames 1",
-    ("scan", "--against"): "scan room.env lay.3dm --select l1 --noise --frames 8 -o log.jsonl",
-    ("scan", "--align"): "scan room.env lay.3dm --select l1 --noise --frames 8 -o log.jsonl",
-    ("scan", "--require"): "scan room.env lay.3dm --select l1 --noise --frames 8 -o log.jsonl",
-    ("scan", "--fit"): "scan room.env lay.3dm --select l1 --noise --frames 8 -o log.jsonl",
-    ("scan", "--json"): "scan room.env lay.3dm --select l1 --noise --frames 8 -o log.jsonl",
-    ("scan", "--report"): "scan room.env lay.3dm --select l1 --noise --frames 8 -o log.jsonl",
     ("coverage", "--run"): RECORD,
     ("coverage", "--trace"): f"arrange room.env {COARSE} --sensor laser:1 --trace trace.csv -o out.3dm",
-    ("coverage", "--tracks"): RECORD,
-    ("coverage", "--frame-rate"): RECORD,
-    ("coverage", "--truths"): RECORD,
-    ("coverage", "--films"): RECORD,
-    ("coverage", "--goal"): RECORD,
-    ("coverage", "--robot"): RECORD,
-    ("coverage", "--reach"): RECORD,
-    ("coverage", "--way"): RECORD,
     ("simrun", "--replay"): RECORD,
     ("simrun", "--from"): RECORD,
     ("simrun", "--hold"): RECORD,
@@ -115,7 +88,6 @@ BEFORE = {
     ("simrun", "-MF"): RECORD,
     ("simrun", "-o"): RECORD,
     ("simrun", "--output"): RECORD,
-    ("envc", "--calibrate"): "scan room.env lay.3dm --select l1 --noise --frames 8 -o log.jsonl",
 }
 # A building of one storey keeps what it says of its storey: envc does not make these of it.
 KEPT = {("envc", "--info"), ("envc", "--json"), ("envc", "--width"), ("envc", "--report")}
@@ -123,12 +95,6 @@ KEPT = {("envc", "--info"), ("envc", "--json"), ("envc", "--width"), ("envc", "-
 OWN = {"out.part", "known", "timing.csv"}
 # Exit status that is not 0: requirements that are not met.
 STATUS = {("coverage", "--require"): 3, ("coverage", "--junit"): 3}
-
-OTHER_INPUT = Exempt("is about inputs that are no buildings")
-PLAN = Exempt("is about plans and pictures, which are no buildings")
-MESH = Exempt("is about meshes and clouds, which are no buildings")
-TIMES = Exempt("says how fast or how far the work is")
-PEER = Exempt("needs a peer; its own tests run it on rooms and buildings")
 
 COMMON = {
     "-h": "!-h",
@@ -160,9 +126,6 @@ def with_words(words):
     return {option: f"{row} {words}" for option, row in CHOICES.items()}
 
 
-SENSOR = "--sensor dome-2.8-1080p:2"
-LASERS = "--sensor laser,range=4:2"
-OUT = "-o out.3dm"
 OPTIONS = {
     "envc": with_words("--to geojson") | {
         "--to": "--to geojson",
@@ -204,9 +167,6 @@ OPTIONS = {
         "--window-layer": PLAN,
         "--models": MESH,
         "--points": PLAN,
-        "--calibrate": "lay.3dm --calibrate log.jsonl -o out.3dm",
-        "--by-people": OTHER_INPUT,
-        "--by-robots": OTHER_INPUT,
         "-MD": "-MD -o out.obj",
         "-MF": "-MD -MF rule -o out.obj",
         "-o": "-o out.obj",
@@ -242,20 +202,12 @@ OPTIONS = {
         "--target": "--target 60% --sensor laser,range=4",
         "--proof": "!room.env --cell 0.4 --sensor laser:1 --proof poses --time-limit 1min",
         "--budget": "--budget 2 --sensor laser,cost=1",
-        "--facing": f"--facing door:*,1m {SENSOR}",
-        "--privacy": f"--privacy '*/desk_zone' {SENSOR}",
-        "--presence": "--presence rec --sensor pir:1",
         "--plane": f"--plane 1 {SENSOR}",
         "--density": f"--density identify {SENSOR}",
         "--grid": f"!room.env --grid 20 --candidates 1,1,4 {LASERS}",
         "--cell": f"!room.env --cell 0.5 --candidates 1,1,4 {LASERS}",
         "--reso": f"--reso 2 {LASERS}",
         "--judge": f"!room.env --cell 0.4 --strategy grid --judge no {LASERS}",
-        "--depth": "--objective even --depth 2 --sensor laser:2",
-        "--further": "--objective even --further 25% --sensor laser:2",
-        "--ways": "--objective track --ways wander:2,1min --sensor laser:1",
-        "--coast": "--objective track --coast 2s --ways wander:2,1min --sensor laser:1",
-        "--crossing": "--objective track --crossing 1s --ways wander:2,1min --sensor laser:1",
         "--robust": f"--robust failures:1 {LASERS}",
         "--crowd": f"--crowd 3 {LASERS}",
         "--case": f"--robust rooms:other.env --case mean {LASERS}",
@@ -279,8 +231,6 @@ OPTIONS = {
         "--prices": f"--prices prices.csv --material list.csv {SENSOR}",
         "--material": f"--material list.csv {SENSOR}",
         "--export-mps": f"--export-mps model.mps {LASERS}",
-        "--certificate": "!room.env --cell 0.4 --sensor laser:1 --proof poses --time-limit 1min --certificate proof",
-        "--verify": "!room.env out.3dm --verify proof",
         "--shard": f"--shard 1/2 {LASERS} -o out.part",
         "--merge": "!!--merge -o out.3dm a.part b.part",
         "--resume": f"--resume {LASERS} {OUT}",
@@ -318,19 +268,7 @@ OPTIONS = {
         "--sensor-bodies": "--select c1 --sensor-bodies -o out.png",
         "--no-sensor-bodies": "--select c1 --no-sensor-bodies -o out.png",
         "--layers": "--select c1 --layers labels,depth -o out.png",
-        "--view": "--view orbit --size 300 -o out.png",
-        "--show": "--view bird --show area --size 300 -o out.png",
-        "--highlight": "--view bird --highlight desk --size 300 -o out.png",
-        "--labels": "--view bird --labels --size 300 -o out.png",
-        "--no-labels": "--view bird --no-labels --size 300 -o out.png",
         "--run": "!room.env lay.3dm --run rec --to jsonl --select l*",
-        "--floor": "--floor feel",
-        "--against": "--against log.jsonl",
-        "--align": "--against log.jsonl --align",
-        "--json": "--against log.jsonl --json",
-        "--require": "--against log.jsonl --require inliers=10%",
-        "--report": "--against log.jsonl --report page.html",
-        "--fit": "--against log.jsonl --fit noise.3dm",
         "--shard": "--select l* --frames 4 --shard 1/2 --to jsonl -o out.part",
         "--merge": "!!--merge -o out.jsonl a.part b.part",
         "--resume": "--select l* --frames 4 --resume -o out.jsonl",
@@ -364,34 +302,15 @@ OPTIONS = {
         "--parallax": "--parallax 30,2",
         "--zone": "--zone '*/door:*,1.2'",
         "--require": "--require 99%",
-        "--facing": "--facing '*/door:*,1m'",
-        "--privacy": "--privacy far,inspect",
         "--junit": "--junit verdicts.xml --require 99%",
         "--compare": "--compare other.3dm",
         "--run": "--run rec",
-        "--presence": "!room.env fixed.3dm --presence wander:2,1min",
-        "--suggest": "--suggest 1",
-        "--time-limit": "--suggest 1 --time-limit 10min",
-        "--perturb": "--perturb 5cm,3",
-        "--failures": "--failures 1",
-        "--crowd": "--crowd 2",
-        "--path": "--path desk_zone,far",
-        "--localise": "--localise 1",
         "--to": "--to svg -o out",
         "--width": "-o out.png --width 300",
         "--color": "-o out.svg --color sensor",
         "--fans": "-o out.svg --fans beams",
         "--speeds": "--to nav2-speed --speeds 0.2,1 -o out.yaml",
         "--trace": "--trace trace.csv -o out.svg",
-        "--tracks": "!room.env lay.3dm --run rec --tracks tracks.csv",
-        "--frame-rate": "!room.env lay.3dm --run rec --tracks tracks.csv --frame-rate 5",
-        "--truths": "!room.env lay.3dm --run rec --tracks tracks.csv --truths people",
-        "--films": "!room.env lay.3dm --run rec --tracks tracks.csv --films films",
-        "--goal": "!room.env lay.3dm --run rec --goal 2,0",
-        "--robot": "!room.env lay.3dm --run rec --goal 2,0 --robot r1",
-        "--reach": "!room.env lay.3dm --run rec --goal 2,0 --reach 0.5",
-        "--way": "!room.env lay.3dm --run rec --goal 2,0 --way 3",
-        "--projection": "!room.env projector.3dm --projection 100",
         "-MD": "-MD -o out.svg",
         "-MF": "-MD -MF rule -o out.svg",
         "-o": "-o out.csv",
@@ -406,7 +325,6 @@ OPTIONS = {
         "--script": "--script drive.txt --record out",
         "--record": "--record out",
         "--report": "--record out --report run.html",
-        "--suggest": "--record out --suggest 1",
         "--record-readings": "--record out --record-readings",
         "--no-record-readings": "--record out --no-record-readings",
         "--record-frames": "--record out --record-readings --record-frames 2",
@@ -422,28 +340,9 @@ OPTIONS = {
         "--width": "!room.env lay.3dm --replay rec --width 300 -o out.png",
         "--fps": "!room.env lay.3dm --replay rec --fps 2 -o out.gif --width 200",
         "--speed": "!room.env lay.3dm --replay rec --speed 2 -o out.gif --width 200",
-        "--expect": "--expect 'no collision' --script drive.txt",
-        "--expect-report": "--expect 'no collision' --expect-report verdict.json",
         "--junit": "--expect 'no collision' --junit verdicts.xml",
         "--listen": "!room.env lay.3dm --clock fast --until 0.5 --listen 127.0.0.1:0",
-        "--web": "--web 127.0.0.1:0",
-        "--web-edit": "--web 127.0.0.1:0 --web-edit",
-        "--foxglove": "--foxglove 127.0.0.1:0",
-        "--rosbridge": "--rosbridge 127.0.0.1:0",
-        "--ros2": PEER,
-        "--ros-robot": PEER,
-        "--rmf": PEER,
-        "--mcap": "--mcap out.mcap",
-        "--mqtt": PEER,
-        "--mqtt-login": PEER,
-        "--mqtt-prefix": PEER,
-        "--p2os": "--p2os r1=127.0.0.1:0",
-        "--scip": "--scip l1=127.0.0.1:0",
-        "--cola": "--cola l1=127.0.0.1:0",
-        "--mjpeg": "--mjpeg c1=127.0.0.1:0",
-        "--zps": PEER,
         "--allow": "--scip l1=127.0.0.1:0 --allow 127.0.0.0/8",
-        "--device-clock": "--scip l1=127.0.0.1:0 --device-clock simulated",
         "--port-file": Exempt("writes a port that the system gives"),
         "--max-clients": "--max-clients 3",
         "--token-file": "--token-file places.csv",
@@ -454,15 +353,17 @@ OPTIONS = {
         "--no-changes": "--no-changes",
         "--shutdown": "--shutdown",
         "--no-shutdown": "--no-shutdown",
-        "--vector": "!room.env robot.3dm --vector 2 --shm ispace-one-room-{own}",
-        "--shm": PEER,
-        "--task": "!room.env robot.3dm --vector 2 --shm ispace-one-room-{own} --task task.yaml",
-        "--people": "!room.env robot.3dm --vector 2 --shm ispace-one-room-{own} --people 1",
-        "--room": "!room.env robot.3dm --vector 2 --shm ispace-one-room-{own} --room other.env",
-        "--autoreset": "!room.env robot.3dm --vector 2 --shm ispace-one-room-{own} --autoreset same_step",
         "-MD": "!room.env lay.3dm --replay rec -MD -o out.svg",
         "-MF": "!room.env lay.3dm --replay rec -MD -MF rule -o out.svg",
         "-o": "!room.env lay.3dm --replay rec -o out.svg",
         "--output": "!room.env lay.3dm --replay rec --output out.svg",
     },
 }
+
+EXTENSIONS = pathlib.Path(__file__).resolve().parent.parent.parent / "lib/extensions"
+for path in sorted(EXTENSIONS.glob("*/site_rows.py")):
+    rows = runpy.run_path(str(path))
+    FILES |= rows.get("FILES", {})
+    BEFORE |= rows.get("BEFORE", {})
+    for tool, lines in rows["OPTIONS"].items():
+        OPTIONS[tool] |= lines

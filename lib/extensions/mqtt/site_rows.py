@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of tests/site/options.py for the options of this extension."""
+from words import PEER
+
+OPTIONS = {
+    "simrun": {
+        "--mqtt": PEER,
+        "--mqtt-login": PEER,
+        "--mqtt-prefix": PEER,
+    },
+}

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of tests/site/options.py for the options of this extension."""
+
+OPTIONS = {
+    "scan": {
+        "--floor": "--floor feel",
+    },
+}
