@@ -3,6 +3,8 @@
 //
 // One thread adds them before any scene is read; from then on they are constant, and the functions
 // below are thread-safe.
+//
+//     addBodyShape("curtain", curtainBody);  // Body curtainBody(const Record& record)
 #pragma once
 
 #include <string>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Schemas of the environment records, and the bodies of furniture.
+// Schemas of the environment records, and the bodies of furniture. Metres; bodies are in the frame
+// of the room.
+//
+//     const Schemas schemas(environmentSchemas());
+//     const PlacementFrame desk = standingOf(record);
+//     const double floor = signedArea(desk.rectangle());  // m2
 #pragma once
 
 #include <vector>

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wall lines of records, and the bodies of walls that meet. Lines are welded first
 // (geom/planar_map.h): ends within a micrometre are one, so boxes and sheets share corners exactly
-// and no ray slips through a corner. Deterministic, single-threaded.
+// and no ray slips through a corner. Deterministic, single-threaded. Metres.
+//
+//     const std::vector<WallLine> walls = wallLinesOf(record, findings);
+//     std::vector<Segment2> lines;
+//     for (const WallLine& wall : walls) lines.push_back(wall.line);
+//     const std::vector<Body> bodies = wallBodies(walls, weld(lines));
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Readings of kinds that extensions add, behind one type: a value that the kind's `measure`
 // returned, and its time and pose. Copies copy the value.
+//
+//     const double level = reading.as<SoundLevel>().level;
 #pragma once
 
 #include <any>

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How errors of measurements become errors of a position: dilution of precision.
+// How errors of measurements become errors of a position: dilution of precision. Information of
+// independent measurements adds up; its inverse is the least covariance of an unbiased estimate (C.
+// R. Rao, Information and the accuracy attainable in the estimation of statistical parameters,
+// 1945). Pure functions, O(1).
+//
+//     FloorInformation spot;
+//     for (const Sensor& sensor : scene.sensors)
+//         spot += atKnownHeight(informationOf(sensor.model, sensor.pose.position, {4, 3, 0}));
+//     const double metres = spot.error();  // root mean square
 #pragma once
 
 #include "geom/point.h"

@@ -2,7 +2,10 @@
 // A sensor and its surroundings at one time: all that a reading depends on.
 //
 // A kind computes its reading from these values alone, without state, so that readings may be taken
-// in any order. Members refer to data of the caller, valid while the reading is taken.
+// in any order, and by several threads at once. Members refer to data of the caller, valid while
+// the reading is taken.
+//
+//     SoundLevel readingOf(const Microphone& microphone, const Moment& now);  // of a kind
 #pragma once
 
 #include <cstdint>

@@ -3,6 +3,9 @@
 //
 // Sensors of all rooms are numbered one room after another, so that formats and runs know one list;
 // SensorRoom tells where a room's part ends.
+//
+//     const SiteSensors site = sensorsOf(scenes, ids, {"ground/l*"});
+//     const std::size_t room = roomOf(site.rooms, 3);  // of site.sensors.read[3]
 #pragma once
 
 #include <cstddef>

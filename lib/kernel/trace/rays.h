@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets of rays and their conventions, for all of lib/kernel/trace.
+// Sets of rays and their conventions, for all of lib/kernel/trace. A ray holds both its ends.
+// Ranges are multiples of the vectors given: metres for unit vectors. Vectors are in the frame of
+// the world.
+//
+//     Directions beams;
+//     beams.resize(180);
+//     for (int i = 0; i < 180; ++i) {
+//         const Vec2 way = unitVector(Angle::degrees(i));
+//         beams.set(static_cast<std::size_t>(i), {way.x, way.y, 0});
+//     }
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/record/yaml: reads and writes records as YAML. readYaml() parses nodes, reads them
 // into items, and expands items to records.
+//
+// Files are untrusted: size, depth, aliases, includes and work are bounded. Records that are
+// written read back as equal ones.
+//
+//     const Document room = readYaml(readAll("room.yaml"), "room.yaml", schemas);
+//     writeAll("copy.yaml", writeYaml(room));
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The changes of a recorded run, and readers of the tables beside those of RunReader.
+//
+//     RunChanges changes(folder, start, devices, read);
+//     while (const auto step = changes.next(time, now, places)) now = step->scene;
+//     if (!changes.failure().empty()) warn(changes.failure());
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/kernel/scene/run: reads the records of runs: moments, collisions, changes of the scene.
+//
+// Records are untrusted, may be compressed, and may still grow: complete moments count, and each
+// error names file and line. A reader takes constant memory, and O(bytes) for all moments. Not
+// thread-safe; several readers may read one record at once. Poses are in the frame of the room,
+// times seconds from the start.
+//
+//     RunReader run("run1");
+//     while (run.next())
+//         for (const RunState& state : run.states())
+//             draw(run.time(), run.members()[state.member].id, state.pose);
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ultrasonic receivers and the tags that they hear: parameters, and the cone of hearing.
 // sense/ultrasound_burst.h simulates their bursts, sense/locate.h computes positions from them.
+//
+//     const Receiver receiver = withParameters(Receiver(), record);
+//     const bool hears = fieldOfView(receiver, pose).holds({2, 1, 0.8});
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files beside pictures that other programs read: depths as PNG, and camera_info.
+// Files beside pictures that other programs read: depths as PNG, and camera_info. Pure functions.
+//
+//     writeAll("camera_info.yaml", cameraInfoYaml(cameraInfoOf(camera), "c1"));
 #pragma once
 
 #include <array>

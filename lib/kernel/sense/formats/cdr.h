@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Common Data Representation, version 1, little-endian: the encoding of ROS 2's messages.
+// Common Data Representation, version 1, little-endian: the encoding of ROS 2's messages. Readers
+// are for untrusted bytes: a count beyond the message is an error, and texts are views of it.
+//
+//     const std::string bytes = CdrWriter().put(std::uint32_t{7}).put("l1").take();
+//     CdrReader in(bytes);
+//     const auto number = in.number<std::uint32_t>();  // 7
+//     const std::string_view name = in.text();  // "l1"
 #pragma once
 
 #include <cstddef>
