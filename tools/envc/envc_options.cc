@@ -199,8 +199,6 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
     line.meters("--width-is", import.width_is, 0.01, 100'000,
                 "width of a drawing, from its leftmost to its rightmost wall, instead of its unit",
                 Enters::History);
-    line.choice("--up", import.up, {"auto", "x", "y", "z"}, "upward axis of a mesh or a cloud",
-                Enters::History);
     const auto take_cut = [&import](const std::string& text) {
         const std::size_t dots = text.find("..");
         import.slice_walls = heightFrom(text.substr(0, dots));
@@ -220,12 +218,6 @@ void addImportOptions(CommandLine& line, ImportOptions& import) {
                "layers that hold doors (default: those named so)", Enters::History);
     line.texts("--window-layer", "GLOB", import.window_layers, "layers that hold windows",
                Enters::History);
-    line.texts("--models", "DIR", import.model_folders,
-               "folder with models that an SDF world names (besides its own, ../models, and those "
-               "of GAZEBO_MODEL_PATH, GZ_SIM_RESOURCE_PATH and SDF_PATH)",
-               Enters::Nothing);
-    line.flag("--points", import.points, "turn points of an ARIA map into obstacles",
-              Enters::History);
 }
 
 void checkCombination(const CommandLine& line, const EnvcOptions& options) {
@@ -316,6 +308,8 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addRoomOptions(line, options);
     line.group("Imports");
     addImportOptions(line, options.import);
+    const ImportExtensions importers(extensions().imports());
+    importers.declare(line, options.import);
     addStoreyOption(line, options.rules,
                     "of IFC also by number, from 1 for the lowest; default: all storeys");
     line.built(extensions().names());
@@ -325,8 +319,8 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     line.essential({"--version", "--to",         "--slice",       "--resolution", "--width",
                     "--zone",    "--info",       "--json",        "--report",     "--check",
                     "--add",     "--fence",      "--set",         "--delete",     "--inside",
-                    "--rooms",   "--close-gaps", "--wall-height", "--units",      "--up",
-                    "--storey",  "--output",     "--quiet",       "--threads"});
+                    "--rooms",   "--close-gaps", "--wall-height", "--units",      "--storey",
+                    "--output",  "--quiet",      "--threads"});
     line.parse(argc, argv);
 
     options.task = tool_extensions.task(line, {options.common, options.rules, options.inputs});
@@ -348,8 +342,7 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     SceneRules rules = options.rules;
     rules.storeys = {};  // which the history has
     options.changing = editCommand(options.inputs, rules);
-    for (const std::string& folder : options.import.model_folders)
-        options.changing += " --models " + shellQuote(folder);
+    options.changing += importers.repeated(options.import);
     options.changing += line.historyLine({}).substr(std::string_view("envc").size());
     return options;
 }

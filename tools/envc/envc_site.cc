@@ -48,7 +48,6 @@ InputRequest requestOf(const EnvcOptions& options, FoundRooms* found, ImportRepo
     InputRequest request;
     request.inputs = options.inputs;
     request.import = options.import;
-    addModelFolders(request.import);
     request.import.found = found;
     request.import.report = &report;
     request.import.storey = options.rules.storeys.one();

@@ -18,7 +18,7 @@
 #include "base/missed_files.h"
 #include "base/packed.h"
 #include "base/run_files.h"
-#include "cli/model_path.h"
+#include "io/importers.h"
 #include "record/text.h"
 
 namespace ispace {
@@ -31,7 +31,7 @@ JobId cacheIdOf(const BatchRun& run) {
     // Messages depend on these two.
     id.history = {run.command + (run.common.quiet ? " -q" : "") +
                   (run.common.verbose > 0 ? " -v" : "")};
-    for (const std::string& folder : modelPath()) id.history.push_back("models in " + folder);
+    for (std::string& text : importSurroundings()) id.history.push_back(std::move(text));
     id.seed = run.common.seed;
     id.form = "cache";
     return id;

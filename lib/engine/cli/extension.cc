@@ -18,6 +18,7 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
         for (const auto make : each.objectives) objectives_.push_back({each.name, make});
         if (each.arrange != nullptr) arrange_.push_back({each.name, each.arrange});
         if (each.coverage != nullptr) coverage_.push_back({each.name, each.coverage});
+        if (each.import != nullptr) imports_.push_back({each.name, each.import});
         if (each.record != nullptr) records_.push_back({each.name, each.record});
         if (each.proof != nullptr) proofs_.push_back({each.name, each.proof});
         if (each.judge != nullptr) judges_.push_back(each.judge);

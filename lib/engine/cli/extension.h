@@ -19,6 +19,7 @@
 
 #include "cli/arrange_group.h"
 #include "cli/coverage_group.h"
+#include "cli/import_group.h"
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
 #include "cli/proof_extension.h"
@@ -46,6 +47,7 @@ struct Extension {
     std::vector<std::unique_ptr<ObjectiveGroup> (*)()> objectives = {};  ///< of `arrange`
     std::unique_ptr<ArrangeGroup> (*arrange)() = nullptr;    ///< rules of layouts of `arrange`
     std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;  ///< of reports of `coverage`
+    std::unique_ptr<ImportGroup> (*import)() = nullptr;      ///< of importers, of `envc`
     std::unique_ptr<RecordGroup> (*record)() = nullptr;      ///< of records of `simrun`
     std::unique_ptr<ProofGroup> (*proof)() = nullptr;        ///< of `arrange --proof`
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;        ///< of runs of `simrun`
@@ -75,6 +77,7 @@ class Extensions {
     [[nodiscard]] const std::vector<ObjectiveRow>& objectives() const { return objectives_; }
     [[nodiscard]] const std::vector<ArrangeRow>& arrange() const { return arrange_; }
     [[nodiscard]] const std::vector<CoverageRow>& coverage() const { return coverage_; }
+    [[nodiscard]] const std::vector<ImportRow>& imports() const { return imports_; }
     [[nodiscard]] const std::vector<RecordRow>& records() const { return records_; }
     [[nodiscard]] const std::vector<ProofRow>& proofs() const { return proofs_; }
     [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
@@ -87,6 +90,7 @@ class Extensions {
     std::vector<ObjectiveRow> objectives_;
     std::vector<ArrangeRow> arrange_;
     std::vector<CoverageRow> coverage_;
+    std::vector<ImportRow> imports_;
     std::vector<RecordRow> records_;
     std::vector<ProofRow> proofs_;
     std::vector<MakeJudge> judges_;

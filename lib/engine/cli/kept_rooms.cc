@@ -84,7 +84,6 @@ Entries& entries() {
 std::optional<KeptRoom> roomIn(const std::string& file) {
     ImportReport report;
     ImportOptions import;
-    addModelFolders(import);
     import.report = &report;
     std::optional<Document> document = readGlbFile(file, sceneSchemas());
     if (document) {

@@ -8,7 +8,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "cli/model_path.h"
 #include "cli/operands.h"
 #include "cli/outputs.h"
 
@@ -90,10 +89,6 @@ void rebaseFiles(std::vector<Record>& records, const std::string& from, const st
                        (old_base / name).lexically_normal().lexically_relative(new_base).string(),
                        record.keyPlace(key.name));
         }
-}
-
-void addModelFolders(ImportOptions& options) {
-    for (std::string& folder : modelPath()) options.model_folders.push_back(std::move(folder));
 }
 
 }  // namespace ispace

@@ -44,7 +44,6 @@ ImportOptions defaultImport(const SceneRules& rules, ImportReport* report) {
     options.includes = rules.includes;
     options.max_work.max = rules.max_work;
     options.storey = rules.storeys.one();
-    addModelFolders(options);
     options.report = report;
     return options;
 }

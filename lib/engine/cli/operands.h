@@ -125,10 +125,6 @@ const std::string& peekStream(const std::string& operand);
 /// relative to its folder, never absolute; "" if ENV came from a stream.
 std::string environmentFileFor(const std::string& output, const std::string& environment_operand);
 
-/// Adds the folders of Gazebo models in the environment variables GAZEBO_MODEL_PATH,
-/// GZ_SIM_RESOURCE_PATH and SDF_PATH.
-void addModelFolders(ImportOptions& options);
-
 /// Request of a tool that reads any number of environments and layouts as one.
 struct InputRequest {
     std::vector<std::string> inputs;  ///< "-" for stdin

@@ -200,7 +200,6 @@ ImportOptions importOf(const SceneRules& rules, ImportReport* report = nullptr) 
     options.report = report;
     options.includes = rules.includes;
     options.max_work.max = rules.max_work;
-    addModelFolders(options);
     return options;
 }
 

@@ -188,6 +188,11 @@ std::vector<Importer>& addedImporters() {
     return importers;
 }
 
+std::vector<std::vector<std::string> (*)()>& addedSurroundings() {
+    static std::vector<std::vector<std::string> (*)()> functions;
+    return functions;
+}
+
 /// A format of an extension that is not in this build.
 struct MissingFormat {
     std::string_view sign, extension;
@@ -281,6 +286,17 @@ bool isJson(std::string_view bytes) {
 
 void addImporters(std::span<const Importer> importers) {
     addedImporters().insert(addedImporters().end(), importers.begin(), importers.end());
+}
+
+void addImportSurroundings(std::vector<std::string> (*surroundings)()) {
+    addedSurroundings().push_back(surroundings);
+}
+
+std::vector<std::string> importSurroundings() {
+    std::vector<std::string> texts;
+    for (const auto& surroundings : addedSurroundings())
+        for (std::string& text : surroundings()) texts.push_back(std::move(text));
+    return texts;
 }
 
 void addMissingFormat(std::string_view sign, std::string_view extension) {

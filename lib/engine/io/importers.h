@@ -25,6 +25,7 @@
 #include "drawing/plan/found_rooms.h"
 #include "geom/polygon.h"
 #include "geom/pose.h"
+#include "io/own_options.h"
 #include "record/record.h"
 #include "record/yaml/yaml.h"
 
@@ -77,12 +78,10 @@ struct ImportOptions {
     std::string units;                ///< m, cm, mm, inch or foot; "": from the file
     std::optional<double> width_is;   ///< metres from a drawing's leftmost to its rightmost wall;
                                       ///< overrides the unit of the file
-    std::string up = "auto";          ///< a mesh's upward axis: auto, x, y or z
     std::vector<std::string> wall_layers;    ///< globs; empty: every layer not named otherwise
     std::vector<std::string> door_layers;    ///< globs; default: no layer
     std::vector<std::string> window_layers;  ///< globs; default: no layer
-    std::vector<std::string> model_folders;  ///< of SDF; relative to the current one
-    bool points = false;                     ///< points of an ARIA map become obstacles
+    OwnOptions own;                          ///< of importers of extensions
     WorkLimit max_work;                      ///< see Budget
     IncludeFiles includes = IncludeFiles::InFolder;  ///< of YAML
     FoundRooms* found = nullptr;     ///< receives the rooms of plans, kept or not; may be null
@@ -135,6 +134,13 @@ constexpr Importer importer(std::string_view name, bool is_plan = true) {
 /// Adds formats, which are tried after records and before all other formats of the core; a program
 /// does so before it reads a file.
 void addImporters(std::span<const Importer> importers);
+
+/// Adds a function that returns what the environment of a process adds to the files of an input,
+/// such as folders that an importer searches: results that are kept for the same files are for the
+/// same texts, too.
+void addImportSurroundings(std::vector<std::string> (*surroundings)());
+/// Returns the texts of all these.
+std::vector<std::string> importSurroundings();
 
 /// States a format that an extension would read, which this program was built without: the error
 /// about such a file names the extension. \param sign a suffix (".dxf"), the root of XML ("<sdf"),

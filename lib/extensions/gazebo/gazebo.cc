@@ -11,6 +11,7 @@
 
 #include "base/message.h"
 #include "base/number.h"
+#include "extensions/gazebo/model_path.h"
 #include "extensions/gazebo/sdf_files.h"
 #include "extensions/worlds/world_import.h"
 #include "io/import_records.h"
@@ -238,7 +239,9 @@ Document readSdf(std::string_view bytes, const std::string& name, const ImportOp
     ImportRecords out(schemas, name, options);
     Budget work(bytes.size(), options.max_work);
     withFileName(name, [&] {
-        worlds::WorldShapes world = SdfReader(bytes, name, options.model_folders, work).read();
+        std::vector<std::string> folders = options.own.get<ModelFolders>().folders;
+        for (std::string& folder : modelPath()) folders.push_back(std::move(folder));
+        worlds::WorldShapes world = SdfReader(bytes, name, folders, work).read();
         worlds::writeWorldRoom(std::move(world), name, options, schemas, work, out);
     });
     return out.take();

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "extensions/gazebo/gazebo.h"
+#include "extensions/gazebo/model_path.h"
 #include "extensions/gazebo/sdf_files.h"
 #include "extensions/meshes/meshes_test.h"
 #include "record/text.h"
@@ -149,7 +150,7 @@ class SdfPackages : public SdfIncludes {
     [[nodiscard]] std::string idsOf(const std::string& content,
                                     const std::vector<std::string>& folders = {}) const {
         ImportOptions options;
-        options.model_folders = folders;
+        options.own.edit<ModelFolders>().folders = folders;
         std::string ids;
         for (const Record& record :
              readSdf("<sdf version='1.9'><world name='w'>" + content + "</world></sdf>",

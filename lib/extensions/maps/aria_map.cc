@@ -240,7 +240,7 @@ class AriaPlan {
     void write(ImportRecords& out, const ImportOptions& options) {
         if (rooms_.reached.empty())
             for (const PlanPath& path : joinedAtEnds(paths_)) out.fence(path);
-        if (options.points) writePoints(out);
+        if (options.own.get<AriaPoints>().are_obstacles) writePoints(out);
         writeAreas(out);
         writeRooms(rooms_, options, out);
         if (rooms_.regions.empty() && rooms_.writes_inside && options.inside.empty() && map_.home)
@@ -309,7 +309,7 @@ class AriaPlan {
     void note(ImportRecords& out, const ImportOptions& options) const {
         for (const auto& [type, count] : map_.left_out)
             out.note(countText(count, type) + " left out");
-        if (!options.points && !map_.points.empty())
+        if (!options.own.get<AriaPoints>().are_obstacles && !map_.points.empty())
             out.note(countText(map_.points.size(), "point") + " left out");
         if (dropped_ > 0) out.note("left out outside of it: " + countText(dropped_, "line"));
     }

@@ -77,7 +77,7 @@ TEST(AriaMap, LinesZonesAndHome) {
 
 TEST(AriaMap, PointsOnRequest) {
     ImportOptions options;
-    options.points = true;
+    options.own.edit<AriaPoints>().are_obstacles = true;
     options.wall_height = 2;
     const Document document = read(kMap, options);
     const std::string text = writeRecordText(document);
@@ -171,7 +171,7 @@ TEST(AriaMap, SimplifyOnRequest) {
 
 TEST(AriaMap, SurvivesDamage) {
     ImportOptions options;
-    options.points = true;
+    options.own.edit<AriaPoints>().are_obstacles = true;
     surviveDamage(kMap, [&](const std::string& bytes) { read(bytes, options); });
 }
 
@@ -187,7 +187,7 @@ TEST(AriaMap, ManyPoints) {
                    '\n';
         }
     ImportOptions options;
-    options.points = true;
+    options.own.edit<AriaPoints>().are_obstacles = true;
     EXPECT_EQ(countOf(read(map, options), "cube"), 1U);
     EXPECT_EQ(countOf(read(far, options), "cube"), 90'000U);
 }

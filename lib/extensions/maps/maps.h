@@ -13,16 +13,20 @@ namespace ispace::maps {
 /// Returns true if the first line is `2D-Map`.
 bool isAriaMap(std::string_view bytes);
 
+/// The option --points; the importer finds it in ImportOptions::own.
+struct AriaPoints {
+    bool are_obstacles = false;
+};
+
 /// Reads a map of ARIA and MobileSim: the LINES, in millimetres, become walls: lines that meet end
 /// to end are one fence, points within ImportOptions::snap (default 5 mm) are one. Keeps the lines
 /// that bound or lie in the region around Home, else the largest one, with an `inside` point, Home
 /// if it lies there. If no region is enclosed, all lines are kept.
 ///
 /// Forbidden areas become zones, `forbidden-NAME` or `forbidden`; forbidden lines and other cairns
-/// are counted in Document::notes. With ImportOptions::points the points of DATA become cubes on a
-/// grid of 0.05 m, as high as the walls, except points within 0.1 m of a line, which are echoes of
-/// it.
-/// \throws FormatError with the line: truncated, no number where one is due, no lines
+/// are counted in Document::notes. With AriaPoints::are_obstacles the points of DATA become cubes
+/// on a grid of 0.05 m, as high as the walls, except points within 0.1 m of a line, which are
+/// echoes of it. \throws FormatError with the line: truncated, no number where one is due, no lines
 Document readAriaMap(std::string_view bytes, const std::string& name, const ImportOptions& options,
                      const Schemas& schemas);
 

@@ -82,8 +82,9 @@ class CloudPlan {
         const auto* const unit =
             std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
                          [&](const LengthUnit& known) { return known.name == options.units; });
+        const std::string& up = options.own.get<UpAxis>().name;
         file_.setFrame(unit == kLengthUnits.end() ? 1 : unit->metres,
-                       options.up == "auto" ? 'z' : options.up.front());
+                       up == "auto" ? 'z' : up.front());
     }
 
     void write() {

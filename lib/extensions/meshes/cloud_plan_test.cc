@@ -229,7 +229,7 @@ TEST(CloudPlan, UnitsAndUpwardAxisAreThoseOfTheOptions) {
     EXPECT_NE(errorOf(asciiPcd(lying), options).find("are --units and --up right?"),
               std::string::npos);
     options.units = "mm";
-    options.up = "y";
+    options.own.edit<UpAxis>().name = "y";
     const auto records = [](const Points& points, const ImportOptions& how) {
         return writeRecordText(readPointCloud(asciiPcd(points), "cloud", how, sceneSchemas()));
     };
@@ -237,7 +237,7 @@ TEST(CloudPlan, UnitsAndUpwardAxisAreThoseOfTheOptions) {
     Points on_side = room();
     for (auto& p : on_side) p = {p[2], p[0], p[1]};
     ImportOptions sideways = between(0.5, 1.8);
-    sideways.up = "x";
+    sideways.own.edit<UpAxis>().name = "x";
     EXPECT_EQ(records(on_side, sideways), records(room(), between(0.5, 1.8)));
 }
 

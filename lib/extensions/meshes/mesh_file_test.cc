@@ -11,6 +11,7 @@
 #include "base/file.h"
 #include "base/message.h"
 #include "extensions/meshes/mesh_parts.h"
+#include "extensions/meshes/meshes.h"
 #include "extensions/meshes/meshes_test.h"
 #include "io/importers.h"
 #include "io/mesh_files.h"
@@ -428,7 +429,7 @@ TEST_F(MeshFile, AsOperand) {
     writeAll(path("My Chair.obj"), kObj);
     ImportOptions options;
     options.units = "cm";
-    options.up = "y";
+    options.own.edit<UpAxis>().name = "y";
     const Document document = readDocument(path("My Chair.obj"), options, sceneSchemas());
     EXPECT_EQ(writeRecordText(document),
               "#env 1\nmesh id=my-chair file=\"My Chair.obj\" unit=cm up=y\n");

@@ -72,7 +72,7 @@ Document meshDocument(const std::string& operand, const ImportOptions& options,
     record.set("id", out.freeId(path.stem().string(), "mesh"));
     record.set("file", path.filename().string());
     if (!options.units.empty()) record.set("unit", options.units);
-    record.set("up", options.up);
+    record.set("up", options.own.get<UpAxis>().name);
     return out.take();
 }
 

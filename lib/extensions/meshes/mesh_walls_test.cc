@@ -102,7 +102,7 @@ TEST(MeshWalls, UnitsAndHeights) {
     ImportOptions options = cutAt(1.5);
     options.units = "mm";
     EXPECT_NEAR(areaOf(readMeshWalls(path, options, sceneSchemas())), 10, 1e-5);
-    options.up = "y";
+    options.own.edit<UpAxis>().name = "y";
     EXPECT_NEAR(areaOf(readMeshWalls(path, options, sceneSchemas())), 12, 1e-5);
     options.slice_walls = 3.5;
     EXPECT_EQ(errorsOf([&] { readMeshWalls(path, options, sceneSchemas()); }),

@@ -23,14 +23,15 @@ namespace {
 template <Document (*kReader)(const std::string&, const ImportOptions&, const Schemas&)>
 Document readUpright(const ImportSource& source) {
     ImportOptions options = source.options;
-    if (options.up != "auto" || meshFormatOf(source.bytes) != MeshFormat::Obj)
+    std::string& up = options.own.edit<UpAxis>().name;
+    if (up != "auto" || meshFormatOf(source.bytes) != MeshFormat::Obj)
         return kReader(source.operand, options, source.schemas);
     const auto* const unit =
         std::find_if(kLengthUnits.begin(), kLengthUnits.end(),
                      [&](const LengthUnit& known) { return known.name == options.units; });
-    options.up = objUpAxis(source.bytes, unit == kLengthUnits.end() ? 1 : unit->metres);
+    up = objUpAxis(source.bytes, unit == kLengthUnits.end() ? 1 : unit->metres);
     Document document = kReader(source.operand, options, source.schemas);
-    const std::string choice = "OBJ taken with " + options.up + " upwards";
+    const std::string choice = "OBJ taken with " + up + " upwards";
     if (!objUpComment(source.bytes) && options.report != nullptr)
         options.report->addChoice(source.operand, choice + ", by its extent; --up says otherwise");
     else

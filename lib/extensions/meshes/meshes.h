@@ -10,6 +10,11 @@
 
 namespace ispace::meshes {
 
+/// The option --up; importers find it in ImportOptions::own.
+struct UpAxis {
+    std::string name = "auto";  ///< or x, y, z: the axis that points upwards
+};
+
 /// Returns a document of one `mesh` record that names the operand, not loaded; its id comes from
 /// the file's name. \throws FormatError for "-": records need a name, and other files may belong to
 /// it
@@ -17,8 +22,8 @@ Document meshDocument(const std::string& operand, const ImportOptions& options,
                       const Schemas& schemas);
 
 /// Reads the plan in the cut through a mesh of a room or building at ImportOptions::slice_walls, a
-/// height after `units` and `up`: cuts become walls, solids that meet become one, and the room is
-/// chosen by chooseRooms(). Lines are simplified by at most a millimetre unless
+/// height after the unit and UpAxis: cuts become walls, solids that meet become one, and the room
+/// is chosen by chooseRooms(). Lines are simplified by at most a millimetre unless
 /// ImportOptions::simplify says otherwise. \throws FormatError if the mesh does not reach this
 /// height, and as meshDocument and loadMesh
 Document readMeshWalls(const std::string& operand, const ImportOptions& options,

@@ -5,6 +5,6 @@
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ImportOptions options;
-    options.points = true;
+    options.own.edit<ispace::maps::AriaPoints>().are_obstacles = true;
     tryPlan(maps::readAriaMap, bytes, "plan.map", options);
 }

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Folders of Gazebo models from the environment, as gz-sim and Gazebo classic search them.
-#pragma once
+#include "extensions/gazebo/model_path.h"
 
 #include <cstdlib>
 #include <sstream>
-#include <string>
-#include <vector>
 
-namespace ispace {
+namespace ispace::gazebo {
 
-/// Returns the folders of Gazebo models in the environment variables GAZEBO_MODEL_PATH,
-/// GZ_SIM_RESOURCE_PATH and SDF_PATH, in the order in which they are searched.
-inline std::vector<std::string> modelPath() {
+std::vector<std::string> modelPath() {
     std::vector<std::string> path;
     for (const char* name : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "SDF_PATH"}) {
         const char* const value = std::getenv(name);
@@ -22,4 +17,4 @@ inline std::vector<std::string> modelPath() {
     return path;
 }
 
-}  // namespace ispace
+}  // namespace ispace::gazebo
