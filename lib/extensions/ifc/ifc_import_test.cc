@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -216,6 +217,21 @@ TEST_P(Cabin, DoorsAndWindowsStandInHolesWithoutARelation) {
     for (std::size_t at = 0; (at = bytes.find("IFCRELFILLSELEMENT", at)) != std::string::npos;)
         bytes.replace(at, 18, "IFCRELOFANOTHERONE");
     EXPECT_EQ(openings(readIfc(bytes, "cabin.ifc", {}, sceneSchemas())), related);
+}
+
+// A wall that ends below a window once got a strip of 5 cm instead.
+TEST(Ifc, WindowsAboveTheirWallsAreLeftOutWithANote) {
+    std::string bytes = ifcBytes("cabin-2x3-mm.ifc");
+    const std::string hatch = "(6300.,2000.,1200.)";
+    const std::size_t at = bytes.find(hatch);
+    ASSERT_NE(at, std::string::npos);
+    bytes.replace(at, hatch.size(), "(6300.,2000.,4200.)");
+    const Document document = readIfc(bytes, "cabin.ifc", {}, sceneSchemas());
+    EXPECT_EQ(countOf(document, "window"), 1U);
+    const std::string note = "1 opening above or below the walls is left out";
+    EXPECT_EQ(std::count_if(document.notes.begin(), document.notes.end(),
+                            [&](const std::string& one) { return one.find(note) == 0; }),
+              1);
 }
 
 TEST(Ifc, RefusalsNameUnreadGeometry) {

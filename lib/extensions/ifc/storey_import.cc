@@ -372,10 +372,12 @@ class StoreyImport {
             }
             const bool is_door = isPassage(opening);
             const double whole = opening.curve ? heights_[*opening.curve] : height_;  // of the wall
-            const double sill =
-                is_door ? 0 : std::clamp(one.box.bottom - floor_, 0.0, whole - 0.05);
+            const double sill = is_door ? 0 : std::max(one.box.bottom - floor_, 0.0);
             const double height = std::min(one.box.top - floor_, whole) - sill;
-            if (height < kThinnestThing) continue;
+            if (height < kThinnestThing) {
+                ++off_walls_;
+                continue;
+            }
             Record& record = out_.add(is_door ? "door" : "window", 0);
             const std::string& name = filling(opening).name;
             if (is_door && !name.empty())
@@ -404,6 +406,9 @@ class StoreyImport {
         if (not_in_walls_ > 0)
             out_.note(countText(not_in_walls_, "opening") + " in no straight wall " +
                       (not_in_walls_ == 1 ? "is" : "are") + " left out");
+        if (off_walls_ > 0)
+            out_.note(countText(off_walls_, "opening") + " above or below the walls " +
+                      (off_walls_ == 1 ? "is" : "are") + " left out");
         if (left_out_ > 0) out_.note(countText(left_out_, "wall") + " off the rooms left out");
     }
 
@@ -520,7 +525,7 @@ class StoreyImport {
     std::vector<double> heights_;    // of the curves
     std::vector<Segment2> written_;  // walls, also across gaps
     PlanRooms rooms_;
-    std::size_t not_in_walls_ = 0, left_out_ = 0;
+    std::size_t not_in_walls_ = 0, off_walls_ = 0, left_out_ = 0;
 };
 
 }  // namespace
