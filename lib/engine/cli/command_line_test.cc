@@ -370,6 +370,9 @@ TEST(CommandLine, ListsTheExtensionsOfTheBuildWithItsVersion) {
     EXPECT_TRUE(version({"cad", "locks"}, nullptr).ends_with("\nExtensions: cad locks\n"));
     EXPECT_TRUE(version({}, nullptr).ends_with("\nExtensions: none\n"));
     EXPECT_NE(version({"cad"}, "--json").find(R"("extensions":["cad"])"), std::string::npos);
+    CommandLine line("tool", "", "does something.");
+    line.built(std::vector<std::string_view>{"cad", "locks"});
+    EXPECT_NE(line.helpText("all").find("\nExtensions: cad locks\n"), std::string::npos);
 }
 
 TEST(CommandLine, TakesTimesWithUnits) {

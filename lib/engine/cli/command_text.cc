@@ -39,6 +39,13 @@ void appendWrapped(std::string& out, const std::string& text, std::size_t used,
     out += '\n';
 }
 
+/// "Extensions: cad ifc", or "Extensions: none".
+void appendExtensions(std::string& out, const std::vector<std::string>& extensions) {
+    std::string names = "Extensions:";
+    for (const std::string& name : extensions) names.append(" ").append(name);
+    appendWrapped(out, extensions.empty() ? names + " none" : names, 0, 2);
+}
+
 }  // namespace
 
 std::string helpText(const HelpPage& page) {
@@ -76,6 +83,7 @@ std::string helpText(const HelpPage& page) {
         appendWrapped(out, effect, 6, 6);
     }
     out += "\nExit status: " + page.statuses + ".\n";
+    if (page.extensions) appendExtensions(out, *page.extensions);
     out += "Details: man " + page.tool +
            (page.has_extensions ? "; --version lists the extensions of this build\n" : "\n");
     return out;
@@ -85,10 +93,7 @@ std::string versionText(const std::string& tool,
                         const std::optional<std::vector<std::string>>& extensions) {
     std::string out = tool + " (ispace) " + std::string(version()) +
                       "\nLicence GPL-3.0-or-later; there is no warranty.\n";
-    if (!extensions) return out;
-    std::string names = "Extensions:";
-    for (const std::string& name : *extensions) names.append(" ").append(name);
-    appendWrapped(out, extensions->empty() ? names + " none" : names, 0, 2);
+    if (extensions) appendExtensions(out, *extensions);
     return out;
 }
 

@@ -27,6 +27,7 @@ struct HelpPage {
     std::vector<std::pair<std::string, std::string>> examples;  ///< commands and their effects
     std::string statuses;                                       ///< meanings of the exit statuses
     bool has_extensions = false;                                ///< versionText() lists them
+    std::optional<std::vector<std::string>> extensions = {};    ///< this page does, too
 };
 
 /// Formats the page in lines of at most 79 characters where words allow it.
