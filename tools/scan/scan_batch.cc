@@ -97,7 +97,7 @@ CloudRows rowsIn(const JobResults& results) {
         if (!results.head().job.form.ends_with(kClouds)) return;
         for (std::string_view left = bytes; !left.empty();) {
             const auto cloud = takeCloud(left);
-            if (!cloud) throw FormatError({results.file(), 0, 0, "a cloud of points is not whole"});
+            if (!cloud) throw FormatError({results.file(), 0, 0, "a cloud of points is incomplete"});
             rows.add(cloud->width, cloud->height);
         }
     });

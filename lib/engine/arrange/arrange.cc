@@ -412,7 +412,7 @@ Arrangement arrangeLimited(const ArrangeSite& site, const std::vector<SensorGrou
 
 namespace {
 
-/// Arranges as arrangeLimited(). \throws FormatError with the file of results that are not whole
+/// Arranges as arrangeLimited(). \throws FormatError with the file of results that are incomplete
 Arrangement arrangeFromResults(const ArrangeSite& site, const std::vector<SensorGroup>& groups,
                                const ArrangeOptions& options, Progress& progress,
                                std::ostream* mps) {
@@ -423,10 +423,10 @@ Arrangement arrangeFromResults(const ArrangeSite& site, const std::vector<Sensor
         if (share.results == nullptr) throw;
         if (share.joined > 0)
             throw FormatError({share.results->file(), 0, 0,
-                               "this part, or another one of the merge, is not whole: delete it "
+                               "this part, or another one of the merge, is incomplete: delete it "
                                "and run its shard again"});
         throw FormatError({share.results->file(), 0, 0,
-                           "it holds the state of an earlier run, which is not whole: delete it"});
+                           "the part of an earlier run is incomplete: delete it"});
     }
 }
 

@@ -534,4 +534,16 @@ Document readInputs(const std::vector<RawInput>& raw, const InputRequest& reques
     return joined;
 }
 
+RunChanges changesOfRun(const std::string& folder, const Scene& start,
+                        std::optional<std::uint64_t> max_work) {
+    return {folder, start, shippedDevices(),
+            [max_work](const std::string& file) {
+                SceneRules rules;
+                rules.same_environment = true;
+                rules.max_work = max_work;
+                return readScene({{file}, rules, false}).scene;
+            },
+            max_work};
+}
+
 }  // namespace ispace

@@ -107,7 +107,7 @@ std::shared_ptr<const ReducedProblem> unpackProblem(Unpacker& from, const Proble
 }
 
 /// Data that nodes share, in the order of its numbers.
-struct SharedThings {
+struct SharedParts {
     std::vector<std::shared_ptr<const ReducedProblem>> problems;
     std::vector<std::shared_ptr<const List>> lists;
 };
@@ -131,7 +131,7 @@ bool isWithinLimits(const Problem& problem, const BranchNode& node) {
     return isWithinLimits(problem, all);
 }
 
-BranchNode unpackNode(Unpacker& from, const SharedThings& shared, const Problem& original) {
+BranchNode unpackNode(Unpacker& from, const SharedParts& shared, const Problem& original) {
     BranchNode node;
     node.problem = at(shared.problems, from.number());
     node.multipliers = at(shared.lists, from.number());
@@ -284,7 +284,7 @@ void pack(Packer& to, const std::vector<const BranchNode*>& nodes) {
 
 std::vector<BranchNode> unpackNodes(Unpacker& from, const Problem& problem) {
     const std::uint64_t problems = from.number(), lists = from.number(), count = from.number();
-    SharedThings shared;
+    SharedParts shared;
     for (std::uint64_t i = 0; i < problems; ++i)
         shared.problems.push_back(unpackProblem(from, problem));
     for (std::uint64_t i = 0; i < lists; ++i)
