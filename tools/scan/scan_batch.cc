@@ -97,7 +97,8 @@ CloudRows rowsIn(const JobResults& results) {
         if (!results.head().job.form.ends_with(kClouds)) return;
         for (std::string_view left = bytes; !left.empty();) {
             const auto cloud = takeCloud(left);
-            if (!cloud) throw FormatError({results.file(), 0, 0, "a cloud of points is incomplete"});
+            if (!cloud)
+                throw FormatError({results.file(), 0, 0, "a cloud of points is incomplete"});
             rows.add(cloud->width, cloud->height);
         }
     });

@@ -425,8 +425,8 @@ Arrangement arrangeFromResults(const ArrangeSite& site, const std::vector<Sensor
             throw FormatError({share.results->file(), 0, 0,
                                "this part, or another one of the merge, is incomplete: delete it "
                                "and run its shard again"});
-        throw FormatError({share.results->file(), 0, 0,
-                           "the part of an earlier run is incomplete: delete it"});
+        throw FormatError(
+            {share.results->file(), 0, 0, "the part of an earlier run is incomplete: delete it"});
     }
 }
 

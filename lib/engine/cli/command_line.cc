@@ -600,9 +600,8 @@ std::vector<std::string> CommandLine::resultWords() const {
 
 std::string CommandLine::helpText(const std::string& about) const {
     const Data& d = *data_;
-    HelpPage page{d.tool, d.synopsis, d.summary,  {},
-                  {},     d.examples, d.statuses, d.built.has_value(),
-                  {}};
+    HelpPage page{d.tool,     d.synopsis, d.summary,           {}, {},
+                  d.examples, d.statuses, d.built.has_value(), {}};
     const auto add = [&](std::size_t index, const std::string& heading) {
         const Data::Entry& entry = d.entries[index];
         page.options.push_back({heading, signature(*entry.option, entry.value), entry.help});
