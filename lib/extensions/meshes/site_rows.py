@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of tests/site/options.py for the options of this extension."""
+from words import MESH
+
+OPTIONS = {
+    "envc": {
+        "--up": MESH,
+    },
+}
