@@ -2,6 +2,12 @@
 // Products of a tool: large ones, sets of files, and rules for make. A tool claims all of them
 // before its work, so that a product that would overwrite an input, or another product, is an error
 // before an hour of computing, not after it.
+//
+//     claimOutputs(options.common);                // before any work
+//     FileStream product(options.common.output);
+//     writeRows(product.stream());
+//     product.commit();                            // until here an old file stays
+//     writeDependencies(options.common, sources);  // -MD
 #pragma once
 
 #include <optional>

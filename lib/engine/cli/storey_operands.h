@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Buildings among the operands of a tool: one storey as a room, or all of them. Also records of
 // their runs, and products of which each storey has a file (%s in the name is its id).
+//
+//     if (const auto input = readBuildingInput({operands, options.rules}))
+//         for (const Storey& storey : input->building.document.storeys)
+//             draw(storey, storeyFile("plan-%s.svg", storey.id));  // plan-ground.svg
 #pragma once
 
 #include <cstdint>

@@ -2,6 +2,9 @@
 // Colours of pictures: chosen so that people with any colour vision, and readers of a grey print,
 // tell classes apart. Maps of categories use Okabe and Ito's palette (Color universal design,
 // 2008), maps of order fall in lightness with each step. Pure functions.
+//
+//     const std::string stroke = cssColor(seriesColor(2));
+//     const std::string fill = cssColor(seriesColor(2).faded(0.3));
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Films: pictures of one size in a file, or files that are written one by one.
+// Films: pictures of one size in a file, or files that are written one by one. Equal pictures give
+// equal bytes, for any number of threads.
+//
+//     GifFilm film(25);
+//     for (const Image& image : images) file.write(film.add(image));
+//     file.write(film.end());
 #pragma once
 
 #include <functional>

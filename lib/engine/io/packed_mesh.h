@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The answer of confined programs that read mesh files, and the limits of such files. Packed bytes
-// are for the two ends of a pipe on one machine, never for a file.
+// are for the two ends of a pipe on one machine, never for a file. O(bytes).
+//
+//     return packedMesh(mesh);                                     // in the confined program
+//     const TriangleMesh mesh = unpackedMesh(answer, "desk.obj");  // in its caller
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How roles answer, those of extensions, too: errors, lists, and items for clients that may read
-// slowly.
+// slowly. For the server's thread.
+//
+//     unread.add("EVENT impact t=9.000 id=r1\n");            // an UnreadItems<std::string>
+//     const std::string lines = takeLines(unread, "9.000");  // once the client has room
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sight between the storeys of a building, through shafts and over stairs.
+// Sight between the storeys of a building, through shafts and over stairs. Views are in the frame
+// of the storey that is seen.
+//
+//     const auto views = viewsBetweenStoreys(Coupling(building), {.plane = 1});
+//     for (const StoreyView& one : views[0]) draw(one.view->region);  // the ground, from elsewhere
 #pragma once
 
 #include <cstddef>

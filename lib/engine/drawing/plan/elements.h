@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours, lines, areas and footprints of elements, for drawings, GeoJSON and maps.
+// Colours, lines, areas and footprints of elements, for drawings, GeoJSON and maps. Metres, as seen
+// from above. Pure functions.
+//
+//     for (const Element& element : environment.elements())
+//         for (const Region& piece : footprintOf(element.body)) fill(piece);
 #pragma once
 
 #include <cstddef>

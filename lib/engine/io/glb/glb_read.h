@@ -3,6 +3,8 @@
 // without a tree and without recursion, meshes may take no more bytes than the file has, and each
 // mesh must have the digest by which a record names it. Geometry that is only drawn is not parsed,
 // so that a compiled room opens in the time of its records.
+//
+//     if (isGlb(bytes) && glbHasRecords(bytes)) return readGlb(bytes, "room.3dm", schemas);
 #pragma once
 
 #include <optional>

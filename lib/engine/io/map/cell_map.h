@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // lib/engine/io/map: maps of cells, which robots and pictures hold, become rooms, and rooms maps.
+// Results depend on the cells and the options alone. Maps count in cells from their lower left
+// corner, records in metres.
+//
+//     const CellMap map{free, occupied, 0.05, Pose2{{-10, -10}, {}}};
+//     writeCellMap(map, {"map.pgm", "no cell is free"}, options, out);
 #pragma once
 
 #include <cstddef>
