@@ -2,7 +2,7 @@
 // Readings of kinds that extensions add, behind one type: a value that the kind's `measure`
 // returned, and its time and pose. Copies copy the value.
 //
-//     const double level = reading.as<SoundLevel>().level;
+//     const int entered = reading.as<DoorCount>().entered;
 #pragma once
 
 #include <any>

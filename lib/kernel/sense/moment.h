@@ -5,7 +5,7 @@
 // in any order, and by several threads at once. Members refer to data of the caller, valid while
 // the reading is taken.
 //
-//     SoundLevel readingOf(const Microphone& microphone, const Moment& now);  // of a kind
+//     DoorCount readingOf(const DoorCounter& counter, const Moment& now);  // of a kind
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // Lists that sensors of one kind share: a scene of a thousand light meters stores its lamps once.
 //
 //     const SharedList<Light> lights(std::move(found));  // of the scene
-//     for (Lux& lux : meters) lux.lights = lights;      // one counter each
+//     for (LightMeter& meter : all) meter.lights = lights;  // one counter each
 #pragma once
 
 #include <cstddef>
