@@ -89,6 +89,11 @@ python3 "$validate" "$schemas" ./*.json ./*.jsonl ./*.geojson run/scans.jsonl \
 # The schemas restrict the values.
 [ "$(ls ./*.json ./*.jsonl ./*.geojson | wc -l)" -gt 30 ] || fail "few outputs: $(ls)"
 
+# A part of an extension replaces no value of a schema.
+printf '{"title":"ispace-scan/2"}' >part.json
+PATH=$schemas:$PATH expect_error 1 join_schema "$source_dir/share/schemas/scan.json" part.json joined.json
+grep -q 'part.json/title stands in the schema, too' err || fail "$(cat err)"
+
 # The test can fail: a key more, and a report without its version.
 sed 's/"height":/"hight":0,"height":/' catalogue.info.json >bad.json
 ! python3 "$validate" "$schemas" bad.json >log || fail "a key that is not described passes"
