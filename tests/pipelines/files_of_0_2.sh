@@ -65,6 +65,7 @@ envc square.glb --to env | tail -n +4 | cmp - plain.env || fail "the model is an
 # Layouts: no warning, and the figures of then.
 coverage -q room.env best.3dm --json >new.json 2>err
 keeps coverage.json new.json
+coverage -q room.env best.3dm --trace trace.jsonl -o traced.svg >/dev/null 2>err || fail "a trace of 0.2: $(cat err)"
 [ ! -s err ] || fail "a layout of 0.2: $(cat err)"
 coverage -q house/house.env house.3dm --json >new.json
 keeps house_coverage.json new.json

@@ -52,6 +52,7 @@ mv out advice.json
 grep -q '"required":' advice.json || fail "no suggestion tells the floor that is required"
 printf '%s\n' "$data/square.env $data/half.3dm" | scan --batch - -q -o by/ >scanned.jsonl
 simrun "$data/square.env" "$data/session.3dm" -q --clock fast --until 0.5 --record run >simrun.json
+simrun "$scenes/open-office.env" --vector 2 --shm "schemas-$$" --people 1 </dev/null >vector.json
 for tool in envc arrange scan coverage simrun; do
     $tool --version --json >"$tool.version.json"
     $tool missing.env --errors json 2>"$tool.said.jsonl" >/dev/null && fail "$tool reads a missing file"

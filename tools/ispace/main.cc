@@ -44,7 +44,7 @@ constexpr std::string_view kUsage =
 
 constexpr std::string_view kRest =
     "\nPages: those of the tools, and env, 3dm, yaml (formats), protocol, wire,\n"
-    "stability, golden-diff, sweep.\n"
+    "ros, stability, golden-diff, sweep.\n"
     "\nOptions:\n"
     "  --errors text|json  messages on stderr as lines for people, or as a JSON\n"
     "                      object each, here and of TOOL (default text)\n"

@@ -71,4 +71,6 @@ def write(folder, first, count):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        sys.exit("usage: rooms.py FOLDER FIRST COUNT: writes COUNT offices from the seed FIRST on")
     print("\n".join(write(sys.argv[1], int(sys.argv[2]), int(sys.argv[3]))))

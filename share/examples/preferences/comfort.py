@@ -24,6 +24,8 @@ def rows(run: str, name: str):
 
 
 def main() -> int:
+    if len(sys.argv) != 3:
+        sys.exit("usage: comfort.py FOLDER LAYOUT, a run that simrun --record has written, and its layout")
     run, layout = sys.argv[1:]
     with open(layout, encoding="utf-8") as file:
         people = dict(re.findall(r"^human id=(\S+) .*\bprefers=(\S+)", file.read(), re.MULTILINE))

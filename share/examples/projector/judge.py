@@ -24,6 +24,8 @@ def rows(run: str, name: str):
 
 
 def main() -> int:
+    if len(sys.argv) != 2:
+        sys.exit("usage: judge.py FOLDER, a run that simrun --record has written")
     run = sys.argv[1]
     turns = [(float(row["t"]), row["state"], float(row["value"])) for row in rows(run, "states.csv") if row["id"] == "p" and row["state"] in ("pan", "tilt")]
     angles = {"pan": 0.0, "tilt": 0.0}
