@@ -196,7 +196,7 @@ class Mqtt(Stream):
 
 
 class FastDds:
-    """Topics over Fast DDS, by the program of tests/dds."""
+    """Topics over Fast DDS, by the program of lib/extensions/ros/tests."""
 
     def __init__(self, program, *topics):
         self.process = subprocess.Popen([program, str(DOMAIN), *topics], stdin=subprocess.PIPE, stdout=subprocess.PIPE,

@@ -72,7 +72,7 @@ simrun "$data/square.env" web.3dm --any-environment -q --web 127.0.0.1:0 --foxgl
 server=$!
 trap 'kill -9 "$server" 2>/dev/null || true; cleanup' EXIT
 for _ in $(seq 1000); do [ -s web_begin.json ] || sleep 0.02; done
-python3 "$source_dir/tests/web/web_client.py" "$(sed 's/.*"web":"\([^"]*\)".*/\1/' web_begin.json)" >web.jsonl
+python3 "$source_dir/lib/extensions/web/tests/web_client.py" "$(sed 's/.*"web":"\([^"]*\)".*/\1/' web_begin.json)" >web.jsonl
 kill "$server"
 wait "$server"
 printf '%s\n' 'run: [ "coverage {room} {layout} -q --report {out}.json", "scan {room} {layout} -q -o {out}.jsonl" ]' \

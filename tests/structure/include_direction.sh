@@ -8,7 +8,7 @@ root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
 
 # Prints one line per violation. $1: a tree with lib/ and tools/.
 violations() {
-    (cd "$1" && find lib tools \( -name '*.h' -o -name '*.cc' \) | LC_ALL=C sort | xargs awk '
+    (cd "$1" && find lib tools -not -path 'lib/extensions/*/tests/*' \( -name '*.h' -o -name '*.cc' \) | LC_ALL=C sort | xargs awk '
     function layer(folder, below,    names, i, n) {
         known[folder] = 1
         n = split(below, names, " ")
@@ -173,7 +173,7 @@ expect tools/envc/main.cc '#include "cli/run.h"' no
 found=$(violations "$root")
 [ -z "$found" ] || fail "$(printf 'wrong direction\n%s' "$found")"
 # The table of docs/architecture.md names a header of each folder to read first, whose first lines tell its job.
-for folder in $(cd "$root" && find lib -mindepth 1 -name '*.h' -printf '%h\n' | grep -vE '^lib/client|/module|/fuzz$' | sort -u); do
+for folder in $(cd "$root" && find lib -mindepth 1 -name '*.h' -printf '%h\n' | grep -vE '^lib/client|/module|/(fuzz|tests)$' | sort -u); do
     sed -sn 2,3p "$root/$folder"/*.h | grep -q "^// $folder: " || fail "no header of $folder begins with its job"
 done
 [ -n "$(ls "$root"/lib/kernel/base/*.cc)" ] || fail "no sources in $root"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Readers of others read its files: tests/pipelines/simrun_mcap.sh.
+// Readers of others read its files: lib/extensions/ros/tests/simrun_mcap.sh.
 #include "extensions/ros/ros_log.h"
 
 #include <gtest/gtest.h>
