@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/extensions/ifc/reader: an IFC file as one mesh, for records that take it as a
+// Private to lib/extensions/ifc: an IFC file as one mesh, for records that take it as a
 // body.
 #pragma once
 

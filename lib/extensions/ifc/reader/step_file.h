@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Private to lib/extensions/ifc/reader: STEP files (ISO 10303-21), the text form of IFC, as
+// Private to lib/extensions/ifc: STEP files (ISO 10303-21), the text form of IFC, as
 // instances by number. Values are views of the file's bytes, which outlive them.
 //
 //     const StepFile file(bytes);
