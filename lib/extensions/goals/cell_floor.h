@@ -12,10 +12,10 @@
 #include <cstddef>
 #include <string>
 
-#include "arrange/search/cell_paths.h"
 #include "base/cell_set.h"
 #include "coverage/target.h"
 #include "env/environment.h"
+#include "extensions/goals/cell_paths.h"
 #include "geom/point.h"
 
 namespace ispace::goals {

@@ -6,12 +6,12 @@
 #include "arrange/arrange.h"
 #include "arrange/coverage_model.h"
 #include "arrange/search/case_values.h"
-#include "arrange/search/cell_paths.h"
 #include "arrange/search/worst_case.h"
 #include "base/error.h"
 #include "base/message.h"
 #include "base/number.h"
 #include "extensions/goals/cell_floor.h"
+#include "extensions/goals/cell_paths.h"
 
 namespace ispace::goals {
 

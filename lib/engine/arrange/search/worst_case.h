@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Layouts that are best in the worst of several cases: other furniture, failures of sensors, ways
-// of an intruder. Each kind of case is a max-min problem, bounded by means of cases, for any
+// Layouts that are best in the worst of several cases: blocks of cells, failures of sensors, ways
+// over the cells. Each kind of case is a max-min problem, bounded by means of cases, for any
 // weights of these.
 //
 //     const SearchResult result = searchWorstCase(cases, options, progress);
@@ -9,9 +9,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
-#include "arrange/search/cell_paths.h"
 #include "arrange/search/problem.h"
 #include "arrange/search/search.h"
 #include "base/cell_set.h"
@@ -24,23 +24,48 @@ struct CellBlock {
     std::size_t first = 0, end = 0;
 };
 
+/// Length of a way in a cell.
+struct PathCell {
+    std::uint32_t cell = 0, length = 0;
+};
+
+/// A way, and the cells in which it counts.
+struct CellPath {
+    std::uint64_t seen = 0, length = 0;
+    std::vector<PathCell> cells;  ///< ascending
+};
+
+/// Ways over the cells of a problem, with lengths in whole units. Const members are thread-safe.
+class CellWays {
+  public:
+    virtual ~CellWays() = default;
+    /// Finds a way of which the least length lies in cells that are seen; of these a shortest one.
+    [[nodiscard]] virtual CellPath leastSeen(
+        const std::function<bool(std::uint32_t)>& is_seen) const = 0;
+
+  protected:
+    CellWays() = default;
+    CellWays(const CellWays&) = default;
+    CellWays& operator=(const CellWays&) = default;
+};
+
 /// A problem whose cells hold several cases. A layout has a value in each of them, and the least
 /// counts.
 ///
-/// With failures = 0 each block is a case: the same room with other furniture, or other mountings.
+/// With failures = 0 each block is a case.
 /// With failures = K there is one block, and each set of K sensors that may fail, standing ones
 /// included, is a case. Then one sensor covers a cell of the block, and `problem` is that of
 /// failureProblem(), with copy 1 as the block.
 ///
-/// With ways there is one block, and each way between the zones is a case: its value is the length
-/// that covered cells hold.
+/// With ways there is one block, and each way is a case: its value is the length that covered cells
+/// hold.
 struct WorstCaseProblem {
     const Problem* problem = nullptr;
     std::vector<CellBlock> blocks;
     int failures = 0;
     std::vector<CellSet> standing = {};  ///< with failures: cells of each standing sensor
     std::uint64_t least_total = 0;       ///< with failures: see FailureProblem
-    const CellPaths* ways = nullptr;
+    const CellWays* ways = nullptr;
     std::uint64_t shortest = 0;  ///< with ways: the least seen way if all cells are covered
 
     /// Returns the weight of a block; with ways the length of the shortest one.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "arrange/search/cell_paths.h"
+#include "extensions/goals/cell_paths.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <queue>
 #include <utility>
 
-namespace ispace {
+namespace ispace::goals {
 
 namespace {
 
@@ -116,4 +116,4 @@ CellPath CellPaths::leastSeen(const std::function<bool(std::uint32_t)>& is_seen)
     return way;
 }
 
-}  // namespace ispace
+}  // namespace ispace::goals
