@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -78,39 +77,6 @@ double readGap(const std::string& text) {
     return gap;
 }
 
-/// Parses `rooms:FILE,FILE`, `failures:K` and `mounting:5cm,3deg`. \param rooms receives files
-RobustChoice readRobust(const std::string& text, std::vector<std::string>& rooms) {
-    const auto colon = text.find(':');
-    const std::string word = text.substr(0, colon);
-    const std::string rest = colon == std::string::npos ? "" : text.substr(colon + 1);
-    RobustChoice robust;
-    rooms.clear();
-    if (word == "rooms" && !rest.empty()) {
-        robust.of = RobustChoice::Of::Rooms;
-        std::istringstream list(rest + ',');
-        for (std::string file; std::getline(list, file, ',');) {
-            if (file.empty()) throw UsageError('`' + text + "` has an empty file name");
-            rooms.push_back(file);
-        }
-        return robust;
-    }
-    if (word == "failures") {
-        const auto count = parseInteger(rest);
-        if (!count || *count < 0 || *count > kMaxFailures)
-            throw UsageError('`' + rest + "` is not a number of failures up to " +
-                             std::to_string(kMaxFailures));
-        robust.of = RobustChoice::Of::Failures;
-        robust.failures = static_cast<int>(*count);
-        return robust;
-    }
-    if (word == "mounting") {
-        robust.of = RobustChoice::Of::Mounting;
-        robust.tolerance = parseTolerance(rest);
-        return robust;
-    }
-    throw UsageError('`' + text + "` is not rooms:FILE[,FILE...], failures:K or mounting:M,DEG");
-}
-
 template <typename Value, std::size_t kCount>
 std::vector<std::string> wordsOf(const Value (&values)[kCount]) {
     std::vector<std::string> words;
@@ -152,8 +118,7 @@ ArrangeCommand::ArrangeCommand(int argc, const char* const* argv)
     line_.group("Goals");
     addGoalOptions();
     objectives_.declare(line_);
-    line_.group("Robustness");
-    addRobustOptions();
+    options_.groups->declare(line_, ArrangeGroup::Place::Cases);
     line_.group("Search");
     addSearchOptions();
     line_.group("Further files");
@@ -296,7 +261,7 @@ void ArrangeCommand::addGoalOptions() {
         Enters::History);
     // Their words come here in the history of a layout.
     options_.groups = std::make_shared<ArrangeExtensions>(extensions().arrange());
-    options_.groups->declare(line_);
+    options_.groups->declare(line_, ArrangeGroup::Place::Goals);
     line_.group("Plane and cells");
     line_.meters("--plane", how.plane, 0, 1000,
                  "height of the plane that all sensors but level lasers cover, 0 is the floor",
@@ -313,36 +278,6 @@ void ArrangeCommand::addGoalOptions() {
         "no: without the thesis' Insider Judge sensors may stand outside the room, and all "
         "of the rectangle about it counts (fig. 4.8; default yes)",
         Enters::History);
-}
-
-void ArrangeCommand::addRobustOptions() {
-    line_.parsed(
-        "--robust", "WHAT",
-        [this](const std::string& text) {
-            options_.how.robust = readRobust(text, options_.robust_rooms);
-        },
-        "find a layout that holds in several cases: rooms:FILE[,FILE...], this room and the same "
-        "with other furniture or doors; failures:K, any K sensors fail; mounting:M,DEG, as in "
-        "mounting:5cm,3deg, random errors of mounting",
-        Enters::BaseNames);
-    constexpr int kMaxPeople = 1000;
-    line_.parsed(
-        "--crowd", "N",
-        [this](const std::string& text) {
-            const auto people = parseInteger(text);
-            if (!people || *people < 0 || *people > kMaxPeople)
-                throw UsageError("--crowd: " + excerpt(text) +
-                                 " is no number of people up to 1000");
-            options_.how.robust = {.of = RobustChoice::Of::Crowd,
-                                   .is_worst = false,
-                                   .people = static_cast<int>(*people)};
-        },
-        "maximise the expected coverage with N people in the way of sight, at random positions",
-        Enters::History);
-    line_.choice("--case", words_.robust_case, {"worst", "mean"},
-                 "maximise the value in the worst case (default of --robust) or the mean over the "
-                 "cases (default of --crowd)",
-                 Enters::History);
 }
 
 void ArrangeCommand::addSearchOptions() {

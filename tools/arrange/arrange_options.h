@@ -36,7 +36,6 @@ struct ArrangeToolOptions {
     std::shared_ptr<const ProofGroup> proof;          ///< likewise
     std::shared_ptr<ArrangeExtensions> groups;        ///< of extensions
     std::string places_file;
-    std::vector<std::string> robust_rooms;  ///< of --robust rooms:
     std::string trace_file, curve_file, mps_file, report_file, heat_file;
     ReportWords page;                  ///< of --report and --material
     ExtensionTask task;                ///< instead of a layout; empty: none
@@ -65,13 +64,11 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
     void addStrategyOption(const StrategyRow& row, const StrategyOption& option);
     void addMountOptions();
     void addGoalOptions();
-    void addRobustOptions();
     void addSearchOptions();
     void addFileOptions();
     void addShareOptions();
     void settle();
     void settleStrategy();
-    void settleRobust();
     void settleObjective();
     void settleDemand();
     void checkStrategyOption(const StrategyRow& row, const StrategyOption& option) const;
@@ -80,7 +77,7 @@ class ArrangeCommand : public ToolCommand<ArrangeToolOptions> {
 
     /// Words of options that are converted once all options are known.
     struct Words {
-        std::string effort, strategy, optimize, mount, judge, share, proof, robust_case;
+        std::string effort, strategy, optimize, mount, judge, share, proof;
         CellWords cells;
     };
     Words words_;

@@ -19,22 +19,11 @@ namespace ispace {
 
 namespace {
 
-/// Lists the values of a robust layout by case, or in the worst of them, and in the mean.
-PageTable casesOf(const RobustChoice& robust, const RobustValues& values) {
+/// Lists the values of a layout in the cases of the search.
+PageTable casesOf(const LayoutCases& cases, const CaseShares& values) {
     PageTable table{"values in the cases of the search", "lr", {"case", "value"}, {}};
-    std::string worst = "worst of all";
-    if (robust.of == RobustChoice::Of::Rooms)
-        for (std::size_t i = 0; i < values.names.size(); ++i)
-            table.rows.push_back({values.names[i], percentText(values.shares[i])});
-    if (robust.of == RobustChoice::Of::Failures) {
-        for (const std::string& id : values.failed)
-            worst += (&id == &values.failed.front() ? ": without " : " and ") + id;
-    } else if (robust.of != RobustChoice::Of::Rooms) {
-        worst = "worst of " + std::to_string(values.shares.size()) +
-                (robust.of == RobustChoice::Of::Crowd ? " crowds" : " mountings");
-    }
-    table.rows.push_back({std::move(worst), percentText(values.worst)});
-    table.rows.push_back({"mean", meanText(robust, values)});
+    for (CaseRow& row : cases.rows(values))
+        table.rows.push_back({std::move(row.name), std::move(row.value)});
     return table;
 }
 
@@ -55,7 +44,7 @@ PageSection resultOf(const ArrangeToolOptions& options, const ArrangeWork& work,
         if (!line.empty()) section.blocks.push_back(PageText{std::string(line)});
         begin = end + 1;
     }
-    if (arrangement.robust) section.blocks.push_back(casesOf(work.how.robust, *arrangement.robust));
+    if (arrangement.cases) section.blocks.push_back(casesOf(*work.how.cases, *arrangement.cases));
     if (!arrangement.alternatives.empty()) {
         PageTable others{"layouts that differ by a metre or 30 degrees in some sensor",
                          "lrrr",

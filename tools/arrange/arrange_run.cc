@@ -21,8 +21,6 @@
 #include "scene/scene.h"
 #include "scene/sensor/ultrasound.h"
 #include "scene/sensor_spec.h"
-#include "site/arranged_site.h"
-#include "site/storey_people.h"
 
 namespace ispace {
 
@@ -124,80 +122,6 @@ void takeDemand(const ArrangeToolOptions& options, ArrangeWork& work) {
     }
 }
 
-/// Draws the random cases: mountings by storey, and crowds spread by free floor, as coverage does.
-void takeCases(const ArrangeToolOptions& options, ArrangeWork& work) {
-    const RobustChoice& robust = work.how.robust;
-    const std::uint64_t seed = options.common.seed;
-    if (robust.of == RobustChoice::Of::Mounting)
-        for (std::size_t i = 0; i < work.goals.size(); ++i)
-            work.goals[i].case_seed = seedOfStorey(seed, i);
-    if (robust.of != RobustChoice::Of::Crowd) return;
-    std::vector<std::size_t> people = {static_cast<std::size_t>(robust.people)};
-    if (!work.input.isOneRoom())
-        people = spreadOverStoreys(work.input.building, work.how.plane, people.front());
-    for (std::size_t i = 0; i < work.goals.size(); ++i)
-        work.goals[i].crowds = crowdsIn(*work.input.rooms()[i], people[i], seedOfStorey(seed, i));
-}
-
-/// Returns the site of a room or building, which it owns. \param goals by room
-std::shared_ptr<const ArrangeSite> ownSite(const SiteInput& input, const ArrangeOptions& how,
-                                           std::vector<RoomGoals> goals) {
-    if (!input.isOneRoom()) {
-        const auto building =
-            std::make_shared<const BuildingSite>(input.building, how, std::move(goals));
-        return {building, &building->site()};
-    }
-    ArrangeSite site;
-    site.rooms.push_back({"", input.rooms().front(), goals.empty() ? RoomGoals() : goals.front()});
-    return std::make_shared<const ArrangeSite>(std::move(site));
-}
-
-/// Reads the rooms or buildings of --robust, each with the layout.
-void takeRooms(const ArrangeToolOptions& options, ArrangeWork& work) {
-    if (options.robust_rooms.empty()) return;
-    RobustChoice& robust = work.how.robust;
-    std::vector<std::string> files = options.robust_rooms;
-    files.push_back(work.input.environment_operand);
-    // Files of several folders may have one name.
-    const auto name_of = [&files](const std::string& file) {
-        const auto count = std::count_if(files.begin(), files.end(), [&](const std::string& one) {
-            return baseName(one) == baseName(file);
-        });
-        return count > 1 ? file : baseName(file);
-    };
-    robust.name = name_of(work.input.environment_operand);
-    for (const std::string& file : options.robust_rooms) {
-        if (isStream(file)) throw UsageError("--robust rooms: stdin is not read: give files");
-        SceneRequest request{{file}, options.rules, false};
-        request.is_further = true;
-        request.rules.same_environment = false;
-        if (!work.input.layout_operand.empty())
-            request.operands.push_back(work.input.layout_operand);
-        SiteInput other = readSite(request);
-        if (other.ids() != work.input.ids()) {
-            const auto text = [](const SiteInput& site) {
-                std::string all;
-                for (const std::string& id : site.ids())
-                    all.append(all.empty() ? "" : ", ").append(printable(id));
-                return site.isOneRoom() ? "one room" : "the storeys " + all;
-            };
-            throw UsageError("--robust rooms: " + file + " has " + text(other) + ", " +
-                             robust.name + " has " + text(work.input) +
-                             ": choose the same with --storey");
-        }
-        std::vector<std::string> fixed;
-        for (const std::string& id : options.fixed) fixed.push_back(inOwnStorey(other, id));
-        if (!fixed.empty() && other.layout) other.setLayout(withoutPlaces(*other.layout, fixed));
-        warnOfImport(options.common, "arrange", other);
-        work.files.insert(work.files.end(), other.files.begin(), other.files.end());
-        robust.rooms.push_back({name_of(file), ownSite(other, work.how, {})});
-    }
-}
-
-}  // namespace
-
-namespace {
-
 /// \throws UsageError for a sensor whose id names a storey, in a building or a storey of one
 void mustHavePlainIds(const SiteInput& input, const std::vector<SensorGroup>& groups) {
     if (input.isOneRoom() && input.storey.empty()) return;
@@ -249,13 +173,12 @@ ArrangeWork readWork(const ArrangeToolOptions& options) {
     if (!input.isOneRoom() && input.building.devices.devices().empty())
         input.building.devices = devices;
     takeGoals(options, work);
-    options.groups->aim(input, work.how, work.goals);
     takePlaces(options, work);
-    takeRooms(options, work);
+    options.groups->aim({input, options.common, options.rules, options.fixed, work.files}, work.how,
+                        work.goals);
     takeDemand(options, work);
-    takeCases(options, work);
     if (work.how.objective) options.objective->aim(input, work.how);
-    work.site = ownSite(input, work.how, work.goals);
+    work.site = searchedSite(input, work.how, work.goals);
     return work;
 }
 

@@ -46,9 +46,6 @@ void checkGoals(const ArrangeToolOptions& options, const ArrangeWork& work,
 /// Returns the result, its gap, and the objective of the bound: one or more lines for stderr.
 std::string reportText(const ArrangeWork& work, const Arrangement& arrangement);
 
-/// Returns the mean over the cases of a robust search, with its standard error for random cases.
-std::string meanText(const RobustChoice& robust, const RobustValues& values);
-
 /// Returns the name of one of several outputs: "best-2.3dm".
 std::string numberedFile(const std::string& output, std::size_t number);
 /// Returns a line for each alternative, with its value and gap; "" without.

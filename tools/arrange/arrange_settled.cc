@@ -77,7 +77,6 @@ void ArrangeCommand::settle() {
             "--refine measures what is in view of the indoor floor: leave out --reso and "
             "--judge no");
     if (options_.proof) options_.proof->take(line_, how);
-    settleRobust();
     settleObjective();
     options_.groups->take(line_, how);
     settleDemand();
@@ -88,37 +87,6 @@ void ArrangeCommand::settle() {
     how.search.swap.seed = options_.common.seed;
     settleFiles();
     settleBatch();
-}
-
-void ArrangeCommand::settleRobust() {
-    RobustChoice& robust = options_.how.robust;
-    if (!robust.isAsked()) {
-        if (line_.given("--case"))
-            throw UsageError("--case is about --robust and --crowd: give one of them, too");
-        return;
-    }
-    if (line_.given("--robust") && line_.given("--crowd"))
-        throw UsageError("--robust and --crowd are about different cases: leave out one");
-    if (line_.given("--case")) robust.is_worst = words_.robust_case == "worst";
-    const std::string name = line_.given("--crowd") ? "--crowd" : "--robust";
-    constexpr const char* kOfOneCase[] = {"--refine", "--connected", "--reso",   "--judge",
-                                          "--proof",  "--shard",     "--resume", "--batch"};
-    for (const char* option : kOfOneCase)
-        if (line_.given(option))
-            throw UsageError(name + " searches in several cases: leave out " + option);
-    constexpr const char* kOfMean[] = {"--target", "--budget",     "--curve", "--alternatives",
-                                       "--heat",   "--export-mps", "--trace"};
-    for (const char* option : kOfMean)
-        if (line_.given(option) && robust.is_worst)
-            throw UsageError(std::string(option) +
-                             " is not about the worst case: give --case mean, or leave it out");
-    if (robust.of != RobustChoice::Of::Failures) return;
-    for (const char* option : {"--target", "--budget", "--curve", "--redundancy"})
-        if (line_.given(option))
-            throw UsageError(
-                "--robust failures is about a given number of sensors, of which one "
-                "covers floor: leave out " +
-                std::string(option));
 }
 
 void ArrangeCommand::settleObjective() {
@@ -138,8 +106,7 @@ void ArrangeCommand::settleDemand() {
     if (!options_.objective || options_.how.objective) return;
     const std::string name = of_option ? std::string(of_option->option())
                                        : "--objective " + std::string(options_.objective->word());
-    std::vector<std::string_view> of_floor = {"--zone",  "--weight", "--robust",
-                                              "--crowd", "--refine", "--proof",
+    std::vector<std::string_view> of_floor = {"--zone",  "--weight", "--refine",   "--proof",
                                               "--judge", "--reso",   "--connected"};
     const std::vector<std::string_view> of_groups = options_.groups->ofFloor();
     of_floor.insert(of_floor.end(), of_groups.begin(), of_groups.end());

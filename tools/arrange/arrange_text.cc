@@ -56,46 +56,6 @@ std::string cellsGapText(const Arrangement& arrangement) {
            " (--cell M sets the size of cells)\n";
 }
 
-}  // namespace
-
-std::string meanText(const RobustChoice& robust, const RobustValues& values) {
-    std::string text = percentText(values.mean);
-    const bool is_random =
-        robust.of == RobustChoice::Of::Crowd || robust.of == RobustChoice::Of::Mounting;
-    if (!is_random || values.shares.size() < 2) return text;
-    return text + " with a standard error of " + percentText(values.standardError());
-}
-
-namespace {
-
-/// Reports the values in the cases.
-std::string robustText(const ArrangeOptions& how, const Arrangement& arrangement) {
-    const RobustValues& values = *arrangement.robust;
-    const RobustChoice& robust = how.robust;
-    std::string text;
-    if (robust.of == RobustChoice::Of::Failures) {
-        for (const std::string& id : values.failed)
-            text.append(text.empty() ? "without " : " and ").append(printable(id));
-        if (text.empty()) text = "without failures";
-        text += ", the worst failure, " + percentText(values.worst) + "; mean over all failures " +
-                percentText(values.mean);
-        return "arrange: " + text + '\n';
-    }
-    if (robust.of == RobustChoice::Of::Rooms) {
-        for (std::size_t i = 0; i < values.names.size(); ++i)
-            text.append(text.empty() ? "in " : ", ")
-                .append(printable(values.names[i]) + ' ' + percentText(values.shares[i]));
-    } else {
-        text = "in " + std::to_string(values.shares.size()) +
-               (robust.of == RobustChoice::Of::Crowd
-                    ? " crowds of " +
-                          counted(static_cast<std::size_t>(robust.people), "person", "people")
-                    : " mountings");
-    }
-    return "arrange: " + text + "; worst " + percentText(values.worst) + ", mean " +
-           meanText(robust, values) + '\n';
-}
-
 /// Returns a line for each of several rooms.
 std::string roomsText(const Arrangement& arrangement) {
     std::string text;
@@ -164,7 +124,7 @@ std::string reportText(const ArrangeWork& work, const Arrangement& arrangement) 
                            formatDouble(*arrangement.least)) +
                 " of these candidates can\n";
     }
-    if (arrangement.robust) text += robustText(how, arrangement);
+    if (arrangement.cases) text += "arrange: " + how.cases->finding(*arrangement.cases) + '\n';
     if (how.objective && arrangement.whole)
         text += "arrange: " + how.objective->finding(arrangement) + '\n';
     if (how.demand)

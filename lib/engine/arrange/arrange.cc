@@ -166,9 +166,9 @@ Measured measuredSite(Arrangement& result, const CoverageModel& model, CoverageO
 /// Exact shares are computed only with a target of the whole floor.
 void measure(Arrangement& result, CoverageModel& model) {
     const ArrangeOptions& options = model.options();
-    const bool is_whole_floor = options.target && options.weights.isUniform() &&
-                                !options.robust.isAsked() && options.redundancy == 1 &&
-                                options.indoor_only && !options.beam_step && !options.demand;
+    const bool is_whole_floor = options.target && options.weights.isUniform() && !options.cases &&
+                                options.redundancy == 1 && options.indoor_only &&
+                                !options.beam_step && !options.demand;
     const CoverageOptions usual{.plane = options.plane, .exact = is_whole_floor};
     const Measured measured = model.site().isOneRoom() ? measuredRoom(result, model, usual)
                                                        : measuredSite(result, model, usual);
@@ -182,13 +182,12 @@ void measure(Arrangement& result, CoverageModel& model) {
         result.is_reached = false;
     const std::vector<CountedView> views =
         model.viewsOf(std::span<const Placement>(result.sensors));
-    if (!options.robust.isAsked() && !options.objective &&
-        (!options.indoor_only || !measured.is_same_grid))
+    if (!options.cases && !options.objective && (!options.indoor_only || !measured.is_same_grid))
         result.value = model.shareOf(std::span<const CountedView>(views));
     result.is_value_by_cells = result.value && options.indoor_only && !options.beam_step &&
                                options.weights.isUniform() && options.redundancy == 1 &&
-                               !options.robust.isAsked() && !options.cover_rule &&
-                               !options.demand && !options.objective;
+                               !options.cases && !options.cover_rule && !options.demand &&
+                               !options.objective;
     for (const Objective& row : objectives())
         if (row.report != nullptr && row.is_asked(options)) row.report(model, views, result);
     if (model.objective() != nullptr) model.objective()->report(views, result);
@@ -491,10 +490,6 @@ ArrangeSite siteOf(const Scene& scene, const ArrangeOptions& options) {
     const std::shared_ptr<const Scene> only(std::shared_ptr<const Scene>(), &scene);
     ArrangeSite site;
     site.rooms.push_back({"", only, goalsOf(options)});
-    const RobustChoice& robust = options.robust;
-    if (robust.of == RobustChoice::Of::Crowd)
-        site.rooms.front().goals.crowds =
-            crowdsIn(scene, static_cast<std::size_t>(robust.people), options.seed);
     return site;
 }
 

@@ -38,10 +38,10 @@
 #include <vector>
 
 #include "arrange/demand.h"
+#include "arrange/layout_cases.h"
 #include "arrange/layout_objective.h"
 #include "arrange/placement_rules.h"
 #include "arrange/prover.h"
-#include "arrange/robust.h"
 #include "arrange/search/search.h"
 #include "arrange/sensor_group.h"
 #include "arrange/site.h"
@@ -118,7 +118,7 @@ struct ArrangeOptions {
     FloorWeights weights;
     int redundancy = 1;  ///< a cell is covered if this many sensors see it
     bool is_connected = false;
-    RobustChoice robust;
+    std::shared_ptr<const LayoutCases> cases;          ///< null: the site as it is, alone
     std::shared_ptr<const LayoutObjective> objective;  ///< null: coverage
     std::vector<UnseenFloor> unseen;
     MakeCoverRule cover_rule;  ///< empty: each sensor covers the cells that it sees
@@ -152,7 +152,7 @@ struct ArrangeOptions {
     /// Looks only at floor that standing sensors leave uncovered, which is faster. A sensor without
     /// a gain then stands anywhere, and connections are not known.
     bool is_for_gain_alone = false;
-    std::uint64_t seed = 0;  ///< of random sites, starts of swaps, mountings and crowds
+    std::uint64_t seed = 0;  ///< of random sites, and of starts of swaps
 };
 
 /// Returns true if each sensor has separate candidates, and so forms a separate kind: Hierarchical
@@ -222,8 +222,9 @@ struct Arrangement {
     /// With ArrangeOptions::objective `value` is a share of this much, in a unit of its own.
     std::optional<double> whole;
 
-    /// Of the written poses; the bound is that of the worst case, or of the mean.
-    std::optional<RobustValues> robust;
+    /// With ArrangeOptions::cases, of the written poses; the bound is that of the worst case, or of
+    /// the mean.
+    std::optional<CaseShares> cases;
 
     /// Ids of sensors, across the site, that can all be removed without loss of value.
     std::vector<std::string> idle;

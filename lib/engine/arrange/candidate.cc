@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "arrange/beam_cells.h"
-#include "arrange/case_room.h"
 #include "arrange/demand.h"
+#include "arrange/layout_cases.h"
 #include "arrange/sensor_group.h"
 #include "arrange/view_rules.h"
 #include "base/error.h"
@@ -128,7 +128,7 @@ struct CandidateViews::Data {
     std::optional<CountedCells> counted = {};
     CellWindow window = {};                // of the counted cells
     const RayWorld* beam_world = nullptr;  // of lasers that see by beams; else null
-    const SiteErrors* errors = nullptr;    // of mounting; null: none
+    const PoseErrors* errors = nullptr;    // null: none
     const CoverRule* rule = nullptr;       // null: none
     const Demand* demand = nullptr;        // null: its cells are those of the grid
     const RayScenes* worlds = nullptr;     // of the demand
@@ -141,10 +141,10 @@ struct CandidateViews::Data {
         Sensor sensor{"", device, mount};
         sensor.pose.position = {site.place.x, site.place.y, mount.position.z};
         sensor.pose.heading = site.headings[heading];
-        if (errors != nullptr) sensor.pose = errors->mounted(sensor);
+        if (errors != nullptr) sensor.pose = errors->actual(sensor);
         return sensor;
     }
-    /// Computes the cells of a level laser between these limits, which turn with its mounting.
+    /// Computes the cells of a level laser between these limits, which turn with its errors.
     void lookBySector(const Site& site, std::span<const Angle> limits, CellParts& parts) const {
         const double range = std::get<Laser>(device).max_range;
         if (errors == nullptr) return cellsBySector(grid, *level, site.place, range, limits, parts);
@@ -224,7 +224,7 @@ struct CandidateViews::Data {
 CandidateViews::CandidateViews(const VisibleArea& sight, const Grid& grid,
                                const SensorModel& device, const Pose3& mount,
                                const CellSet* counted, const std::optional<ByBeams>& by_beams,
-                               const SiteErrors* errors, const CoverRule* rule)
+                               const PoseErrors* errors, const CoverRule* rule)
     : data_(new Data{grid, sight, sight.levelAt(mount.position.z), device, mount,
                      isOmnidirectional(device, mount), scansSlice(Sensor{"", device, mount}),
                      counted != nullptr && counted->count() < counted->size()

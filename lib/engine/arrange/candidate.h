@@ -10,8 +10,8 @@
 // SiteSights.
 //
 // Of the cells that count, views hold those that VisibleArea has, unless lasers see by beams or
-// sensors are mounted with errors: tables and shared sights save time alone. Sites are scanned by
-// several threads and added in order.
+// sensors stand off their poses (PoseErrors): tables and shared sights save time alone. Sites are
+// scanned by several threads and added in order.
 //
 //     PosedCandidates set(grid.size());
 //     const CandidateViews views(sight, grid, device, mount);
@@ -90,7 +90,7 @@ class PosedCandidates : public CandidateSet {
 
 class CoverRule;
 class Demand;
-class SiteErrors;
+class PoseErrors;
 struct KnownSight;
 
 /// The cells to which sensors at each of some sites, all at one height, have a free sight: views of
@@ -146,11 +146,11 @@ class CandidateViews {
     /// \param counted the cells with weight; null: all. Views contain arbitrary subsets of the
     ///        other cells, which saves memory
     /// \param by_beams empty: lasers in a slice see their whole visible area
-    /// \param errors of mounting; null: sensors have the poses of their candidates
+    /// \param errors of sensors; null: they have the poses of their candidates
     /// \param rule of cells that some sensors alone cover; null: none
     CandidateViews(const VisibleArea& sight, const Grid& grid, const SensorModel& device,
                    const Pose3& mount, const CellSet* counted = nullptr,
-                   const std::optional<ByBeams>& by_beams = {}, const SiteErrors* errors = nullptr,
+                   const std::optional<ByBeams>& by_beams = {}, const PoseErrors* errors = nullptr,
                    const CoverRule* rule = nullptr);
     ~CandidateViews();
     CandidateViews(const CandidateViews&) = delete;

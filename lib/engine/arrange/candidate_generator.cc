@@ -101,7 +101,7 @@ struct CandidatePool::Data {
 
     /// Returns true for sites that are valid in all rooms but the first, too.
     bool isValidElsewhere(double height, Point2 place) {
-        if (options.robust.of != RobustChoice::Of::Rooms) return true;
+        if (rooms.empty() || !options.cases->needFreeFloor()) return true;
         auto& others = other_validities[height];
         for (std::size_t i = others.size() + 1; i < rooms.size(); ++i)
             others.push_back(
@@ -247,7 +247,7 @@ struct CandidatePool::Data {
         return allowed;
     }
 
-    /// Adds candidates with views in the room, or in all rooms of a robust search.
+    /// Adds candidates with views in the room, or in the room in all cases.
     bool look(PosedCandidates& set, const CandidateViews& views, const SensorClass& kind,
               const Pose3& mount, std::span<const Site> sites, std::size_t least) {
         if (rooms.empty())
@@ -257,9 +257,9 @@ struct CandidatePool::Data {
         std::vector<StackedViews> stack;
         for (const auto& room : rooms) {
             room->worlds.prepare(mount);
-            all.push_back(std::make_unique<CandidateViews>(
-                room->sight, room->target.grid, kind.model, mount, &room->counted, std::nullopt,
-                room->errors ? &*room->errors : nullptr));
+            all.push_back(std::make_unique<CandidateViews>(room->sight, room->target.grid,
+                                                           kind.model, mount, &room->counted,
+                                                           std::nullopt, room->errors.get()));
             stack.push_back({all.back().get(), room->first});
         }
         return addCandidates(set, stack, sites, options.max_bytes - bytes, progress, least,

@@ -29,7 +29,7 @@ struct CandidateWeights {
 CellSet unseenCells(const UnseenFloor& floor, const Target& target);
 
 struct CaseRoom;
-/// Rooms in which candidates look, instead of the environment alone; empty: not robust.
+/// Rooms in which candidates look, instead of the environment alone; empty: there are no cases.
 using CaseRooms = std::span<const std::unique_ptr<CaseRoom>>;
 
 /// Builds candidates by the strategy and the mount rules of the options.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Builds the coverage problem of a site, and maps its solutions back.
 //
-// The cells of the problem are those of the rooms, one room after another. A robust search repeats
-// them: a Copy is the block of a room's cells for one case, or for one set of failed sensors, and a
-// candidate's runs are shifted to each copy that it sees. Rooms that see each other are joined
-// candidate by candidate (Joiner): runs in other rooms are added to those in its room. A room alone
-// has no copies, and its candidates are used as they were made.
+// The cells of the problem are those of the rooms, one room after another. A search in several
+// cases repeats them: a Copy is the block of a room's cells for one case, or for one set of failed
+// sensors, and a candidate's runs are shifted to each copy that it sees. Rooms that see each other
+// are joined candidate by candidate (Joiner): runs in other rooms are added to those in its room. A
+// room alone has no copies, and its candidates are used as they were made.
 #include "arrange/coverage_model.h"
 
 #include <tbb/parallel_for.h>
@@ -69,7 +69,7 @@ CoverageModel::CoverageModel(const ArrangeSite& site, const std::vector<SensorGr
             if (room.has_floor) mustBeRefinable(*room.scene, devicesOf(kinds_), room.goals.weights);
     setUnits();
     addRooms();
-    if (options.robust.isAsked()) stackCases();
+    if (options.cases) stackCases();
     if (options.objective) {
         objective_ = options.objective->searchIn(*this);
         total_ = objective_->total();
@@ -126,8 +126,7 @@ void CoverageModel::addRooms() {
         if (!room.has_floor) continue;
         std::shared_ptr<RoomModel> own;
         // Rooms that are equal here may differ in other sites.
-        const bool is_shared =
-            room.goals.isPlain() && options_.robust.of != RobustChoice::Of::Rooms;
+        const bool is_shared = room.goals.isPlain() && !hasSites();
         std::shared_ptr<RoomModel>& model = is_shared ? known[room.scene.get()] : own;
         if (model == nullptr) model = std::make_shared<RoomModel>(room, options_, kinds_, unit_);
         added.model = model;
@@ -159,7 +158,7 @@ void CoverageModel::addRooms() {
         if (room.model != nullptr)
             room.model->standing().forEach(
                 [&](std::size_t cell) { problem_.standing.set(room.copies.front().first + cell); });
-    if (joinsRooms()) countStandingBeyond();
+    if (joinsRooms() && !hasSites()) countStandingBeyond(0, standingIn(caseOf(site_)));
 }
 
 /// Gives each element of a demand the number of sensors that it needs.
@@ -186,7 +185,7 @@ void CoverageModel::setAreas(std::vector<double> areas) {
     problem_.weights.assign(areas.size(), 0);
     if (!(all > 0)) return;
     // Copies of cells for failures need room for their weights.
-    const double most = options_.robust.of == RobustChoice::Of::Failures
+    const double most = options_.cases && options_.cases->failures()
                             ? 1 << 25
                             : std::numeric_limits<std::uint32_t>::max();
     const double scale = (1 - 1e-9) * most / all;
@@ -197,29 +196,28 @@ void CoverageModel::setAreas(std::vector<double> areas) {
     areas_ = std::move(areas);
 }
 
-std::vector<Sensor> CoverageModel::standingIn(std::size_t number, std::size_t room) const {
-    const bool is_other = options_.robust.of == RobustChoice::Of::Rooms && number > 0;
-    if (!is_other) return site_.rooms[room].scene->sensors;
-    std::vector<Sensor> sensors =
-        options_.robust.rooms[number - 1].site->rooms[room].scene->sensors;
-    for (Sensor& sensor : sensors) limitCovered(sensor.model, options_);
-    return sensors;
+std::vector<SiteSensor> CoverageModel::standingIn(const SiteCase& site) const {
+    std::vector<SiteSensor> standing;
+    for (std::size_t room = 0; room < rooms_.size(); ++room)
+        for (const Sensor& sensor : site.rooms[room]->sensors) {
+            standing.push_back(SiteSensor{room, sensor});
+            limitCovered(standing.back().sensor.model, options_);
+        }
+    return standing;
 }
 
-/// Adds the floor that standing sensors see in other rooms, as their candidates would.
-void CoverageModel::countStandingBeyond() {
-    for (std::size_t number = 0; number < viewCases(); ++number)
-        for (std::size_t from = 0; from < rooms_.size(); ++from)
-            for (const Sensor& sensor : standingIn(number, from)) {
-                if (!kindOf(sensor.model).perceives || isPartial(sensor.model)) continue;
-                CellSet cells(problem_.cells());
-                addBeyond(number, from, sensor, cells);
-                cells.forEach([&](std::size_t cell) {
-                    problem_.achieved[cell] = static_cast<std::uint16_t>(
-                        std::min(problem_.achieved[cell] + unit_, 0xffff));
-                });
-                problem_.standing |= cells;
-            }
+/// Counts them as candidates would be.
+void CoverageModel::countStandingBeyond(std::size_t number, std::span<const SiteSensor> standing) {
+    for (const auto& [room, sensor] : standing) {
+        if (!kindOf(sensor.model).perceives || isPartial(sensor.model)) continue;
+        CellSet cells(problem_.cells());
+        addBeyond(number, room, sensor, cells);
+        cells.forEach([&](std::size_t cell) {
+            problem_.achieved[cell] =
+                static_cast<std::uint16_t>(std::min(problem_.achieved[cell] + unit_, 0xffff));
+        });
+        problem_.standing |= cells;
+    }
 }
 
 /// Explains why no floor counts.
@@ -242,13 +240,12 @@ std::string CoverageModel::nothingText() const {
 }
 
 bool CoverageModel::joinsRooms() const {
-    const auto joins = [](const ArrangeSite& site) {
-        return site.sight != nullptr && site.sight->joinsRooms();
+    const auto joins = [](const RoomSight* sight) {
+        return sight != nullptr && sight->joinsRooms();
     };
-    const std::vector<NamedSite>& others = options_.robust.rooms;
-    return (joins(site_) ||
-            std::any_of(others.begin(), others.end(),
-                        [&](const NamedSite& other) { return joins(*other.site); })) &&
+    return (joins(site_.sight) ||
+            std::any_of(case_sights_.begin(), case_sights_.end(),
+                        [&](const auto& sight) { return joins(sight.get()); })) &&
            !options_.demand && (!options_.objective || options_.objective->joinsRooms());
 }
 
@@ -260,13 +257,12 @@ bool CoverageModel::mayStand(const SensorClass& kind, std::size_t room) const {
 }
 
 Sensor CoverageModel::mountedIn(std::size_t number, std::size_t room, Sensor sensor) const {
-    if (options_.robust.of != RobustChoice::Of::Mounting || view_cases_ == 0) return sensor;
+    if (view_cases_ == 0 || sensor.mount || sensor.person) return sensor;
     if (rooms_[room].model != nullptr)
         return rooms_[room].model->cases()[number]->mounted(std::move(sensor));
-    if (!sensor.mount && !sensor.person)
-        sensor.pose = SiteErrors(site_.rooms[room].scene->environment, options_.robust.tolerance,
-                                 site_.rooms[room].goals.case_seed.value_or(options_.seed), number)
-                          .mounted(sensor);
+    const auto errors =
+        options_.cases->errorsIn(site_.rooms[room].scene->environment, room, number);
+    if (errors != nullptr) sensor.pose = errors->actual(sensor);
     return sensor;
 }
 
@@ -612,7 +608,7 @@ double CoverageModel::shareOf(std::span<const CountedView> views) const {
 }
 
 double CoverageModel::shareOf(const std::vector<Choice>& chosen, std::uint64_t value) const {
-    if (areas_.empty() || options_.robust.isAsked() || options_.objective) return share(value);
+    if (areas_.empty() || options_.cases || options_.objective) return share(value);
     std::vector<CountedView> views;
     for (const Choice& choice : chosen) {
         const SensorType& kind = problem_.kinds[choice.kind];

@@ -111,19 +111,17 @@ class CoverageModel {
     /// Returns the search options, with the memory that the candidates leave.
     [[nodiscard]] SearchOptions searchOptions() const;
 
-    /// Returns the cases of a robust search.
-    /// \pre the search is robust
+    /// Returns the problem of the worst case. \pre ArrangeOptions::cases are set
     [[nodiscard]] const WorstCaseProblem& cases() const { return cases_; }
-    /// Returns the values of these sensors in the cases.
-    [[nodiscard]] RobustValues robustValuesOf(std::span<const CountedView> views,
-                                              std::span<const Placement> sensors) const;
+    /// Returns the values of these sensors in the cases. \pre as cases()
+    [[nodiscard]] CaseShares sharesInCases(std::span<const CountedView> views,
+                                           std::span<const Placement> sensors) const;
     /// Returns the search of ArrangeOptions::objective; null: coverage.
     [[nodiscard]] const ObjectiveSearch* objective() const { return objective_.get(); }
     /// Returns true if the search maximises the worst case; its values are those of worstCase().
     [[nodiscard]] bool isWorstCase() const {
-        const bool is_plain =
-            options_.robust.of == RobustChoice::Of::Failures && options_.robust.failures == 0;
-        return options_.robust.isAsked() && options_.robust.is_worst && !is_plain;
+        const LayoutCases* const cases = options_.cases.get();
+        return cases != nullptr && cases->isWorst() && cases->failures() != 0;
     }
 
     /// Converts a value of the search to a share of the total weight. Weights of several rooms are
@@ -207,14 +205,13 @@ class CoverageModel {
     /// Lets each element of a demand need as many sensors as it says.
     void setNeeds();
     void setAreas(std::vector<double> areas);
-    void countStandingBeyond();
+    /// Adds the floor that standing sensors see in other rooms in a case.
+    void countStandingBeyond(std::size_t number, std::span<const SiteSensor> standing);
     [[nodiscard]] std::string nothingText() const;
     /// Sets the cells of all cases, and their weights.
     void stackCases();
     void stackRooms();
     void stackFailures();
-    /// Returns the rooms in a case.
-    [[nodiscard]] SiteCase siteIn(std::size_t number) const;
     void addKinds(Progress& progress);
     /// Sets the regions in which coverage is to be connected: parts().
     void addRegions();
@@ -252,8 +249,10 @@ class CoverageModel {
     /// Adds the cells of other rooms that a sensor sees in a case, with all copies of them.
     void addBeyond(std::size_t number, std::size_t room, const Sensor& sensor,
                    CellSet& cells) const;
-    /// Returns the sensors that stand in a room in a case.
-    [[nodiscard]] std::vector<Sensor> standingIn(std::size_t number, std::size_t room) const;
+    /// Returns the sensors that stand in a case, limited to the floor that they cover.
+    [[nodiscard]] std::vector<SiteSensor> standingIn(const SiteCase& site) const;
+    /// Returns true if the cases are sites.
+    [[nodiscard]] bool hasSites() const { return options_.cases && !options_.cases->failures(); }
 
     const ArrangeSite& site_;
     const std::vector<SensorGroup>& groups_;

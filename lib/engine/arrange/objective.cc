@@ -39,10 +39,10 @@ void reportServed(const CoverageModel& model, std::span<const CountedView> views
     result.value = model.shareOf(views);
 }
 
-void reportRobust(const CoverageModel& model, std::span<const CountedView> views,
-                  Arrangement& result) {
-    result.robust = model.robustValuesOf(views, result.sensors);
-    result.value = model.isWorstCase() ? result.robust->worst : result.robust->mean;
+void reportCases(const CoverageModel& model, std::span<const CountedView> views,
+                 Arrangement& result) {
+    result.cases = model.sharesInCases(views, result.sensors);
+    result.value = model.isWorstCase() ? result.cases->worst : result.cases->mean;
 }
 
 void reportCost(const CoverageModel& model, std::span<const CountedView> /*views*/,
@@ -85,10 +85,10 @@ constexpr Objective kObjectives[] = {
      .option = "",
      .is_asked = [](Options options) { return options.demand != nullptr; },
      .report = reportServed},
-    {.name = "robust",
-     .option = "--robust",
-     .is_asked = [](Options options) { return options.robust.isAsked(); },
-     .report = reportRobust},
+    {.name = "cases",
+     .option = "",
+     .is_asked = [](Options options) { return options.cases != nullptr; },
+     .report = reportCases},
     {.name = "cost",
      .option = "--budget",
      .is_asked = [](Options) { return true; },

@@ -37,7 +37,7 @@ struct Objective {
                    Arrangement&) = nullptr;
 };
 
-/// Returns the rows: coverage, weights, density, redundancy, rule, demand, robust, cost.
+/// Returns the rows: coverage, weights, density, redundancy, rule, demand, cases, cost.
 std::span<const Objective> objectives();
 
 /// Computes the product of the weights of all requested objectives. O(cells * zones)

@@ -19,7 +19,6 @@ ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options) {
     options.cover_rule = goals.cover_rule;
     options.list = goals.places;
     options.demand = goals.demand;
-    options.robust.seed = goals.case_seed;
     return options;
 }
 
@@ -33,7 +32,6 @@ RoomGoals goalsOf(const ArrangeOptions& options) {
     goals.cover_rule = options.cover_rule;
     goals.places = options.list;
     goals.demand = options.demand;
-    goals.case_seed = options.robust.seed;
     return goals;
 }
 
@@ -65,8 +63,8 @@ RoomModel::RoomModel(const SiteRoom& room, const ArrangeOptions& options,
     if (options_.demand) countDemand(kinds);
 }
 
-CaseRoom& RoomModel::addCase(const Scene& scene) {
-    cases_.push_back(std::make_unique<CaseRoom>(scene, options_, cases_.size()));
+CaseRoom& RoomModel::addCase(const Scene& scene, std::size_t room) {
+    cases_.push_back(std::make_unique<CaseRoom>(scene, options_, room, cases_.size()));
     return *cases_.back();
 }
 

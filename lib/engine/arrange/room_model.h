@@ -34,8 +34,8 @@ ArrangeOptions optionsOf(const RoomGoals& goals, ArrangeOptions options);
 RoomGoals goalsOf(const ArrangeOptions& options);
 
 /// A room of a CoverageModel: weights and multiplicities of its cells, the views of sensors in it,
-/// and its candidates. Its cells are those of a grid, or the elements of a demand; of a robust
-/// search those of all cases, one after another.
+/// and its candidates. Its cells are those of a grid, or the elements of a demand; of a search
+/// in several sites (LayoutCases) those of all of them, one after another.
 class RoomModel {
   public:
     /// Stores the references. \param unit multiplicity of sensors other than receivers
@@ -50,10 +50,10 @@ class RoomModel {
     RayScenes& worlds() { return worlds_; }
     /// Computes the visible areas of sensors in the room.
     [[nodiscard]] const VisibleArea& sight() const { return sight_; }
-    /// Returns the rooms of the cases; empty: not robust, or not yet.
+    /// Returns the rooms of the cases; empty: there are none, or not yet.
     [[nodiscard]] CaseRooms cases() const { return cases_; }
-    /// Adds the room of a case. \param scene the room in it
-    CaseRoom& addCase(const Scene& scene);
+    /// Adds the room of a case. \param scene the room in it \param room its index in the site
+    CaseRoom& addCase(const Scene& scene, std::size_t room);
 
     /// Returns weights of the cells, by the options.
     [[nodiscard]] const std::vector<double>& weights() const { return weights_; }

@@ -188,8 +188,7 @@ PartResults resultsOf(const CoverageModel& model, std::span<const std::size_t> r
 bool isSearchedByParts(const CoverageModel& model) {
     const ArrangeOptions& options = model.options();
     return !model.site().isOneRoom() && model.kinds().size() == 1 && !options.budget &&
-           !options.target && !options.robust.isAsked() && !options.objective &&
-           model.parts().size() > 1;
+           !options.target && !options.cases && !options.objective && model.parts().size() > 1;
 }
 
 std::vector<SearchResult> searchParts(const CoverageModel& model, Progress& progress) {

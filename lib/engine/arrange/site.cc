@@ -9,12 +9,26 @@ namespace ispace {
 bool RoomGoals::isPlain() const {
     return weights.isUniform() && counts && takes_sensors && keep_out.empty() && keep_in.empty() &&
            unseen.empty() && !cover_rule && forbidden.empty() && places.empty() &&
-           demand == nullptr && crowds.empty() && !case_seed;
+           demand == nullptr;
 }
 
 Point3 SiteRoom::inSite(Point3 point) const {
     const Point2 at = Pose2{origin.onFloor(), turn} * point.onFloor();
     return {at.x, at.y, origin.z + point.z};
+}
+
+SiteCase caseOf(const ArrangeSite& site) {
+    SiteCase own{{}, std::shared_ptr<const RoomSight>(std::shared_ptr<void>(), site.sight)};
+    for (const SiteRoom& room : site.rooms) own.rooms.push_back(room.scene);
+    return own;
+}
+
+SiteCase caseOf(const ArrangeSite& site, const ChangeScene& change) {
+    if (site.sight != nullptr) return site.sight->changed(change);
+    SiteCase changed;
+    for (std::size_t i = 0; i < site.rooms.size(); ++i)
+        changed.rooms.push_back(change(i, site.rooms[i].scene));
+    return changed;
 }
 
 std::vector<ServedDemand> servedByRoom(const ArrangeSite& site, const CellSet& served) {

@@ -11,9 +11,8 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,7 +21,6 @@
 #include "arrange/view_rules.h"
 #include "base/cell_set.h"
 #include "coverage/coverage.h"
-#include "coverage/crowd.h"
 #include "coverage/target.h"
 #include "env/zone.h"
 #include "geom/point.h"
@@ -46,9 +44,6 @@ struct RoomGoals {
     MakeCoverRule cover_rule = {};      ///< empty: each sensor covers the cells that it sees
     std::vector<Pose3> forbidden = {};  ///< candidates that are left out
     std::vector<Site> places = {};      ///< of Strategy::List
-    /// Of RobustChoice, for a room of several.
-    std::optional<std::uint64_t> case_seed = {};
-    std::vector<Crowd> crowds = {};  ///< by case
     /// Counts instead of its floor, if the options ask for a demand. Every room then has one.
     std::shared_ptr<const Demand> demand = nullptr;
 
@@ -85,6 +80,8 @@ struct SiteFigures {
 class RoomSight {
   public:
     virtual ~RoomSight() = default;
+    /// Returns false if no room sees another one.
+    [[nodiscard]] virtual bool joinsRooms() const = 0;
     /// False if no sensor of this kind, at its position with any heading, sees cells of another
     /// room.
     [[nodiscard]] virtual bool maySee(std::size_t from, const Sensor& sensor,
@@ -101,19 +98,21 @@ class RoomSight {
     RoomSight& operator=(const RoomSight&) = default;
 };
 
-/// The rooms of a site in one case of a robust search.
+/// The rooms of a site in one of several cases in which a layout is judged.
 struct SiteCase {
     std::vector<std::shared_ptr<const Scene>> rooms;
     std::shared_ptr<const RoomSight> sight;  ///< null for a room alone
 };
 
+/// Makes the scene of a room in a case from that of the site.
+using ChangeScene =
+    std::function<std::shared_ptr<const Scene>(std::size_t room, std::shared_ptr<const Scene>)>;
+
 /// How the rooms of a site see each other. Thread-safe.
 class SiteSight : public RoomSight {
   public:
-    /// Returns false if no room sees another one.
-    [[nodiscard]] virtual bool joinsRooms() const = 0;
-    /// Returns the site with people in the way of sight. \param crowds by room
-    [[nodiscard]] virtual SiteCase crowded(std::span<const Crowd> crowds) const = 0;
+    /// Returns the site with changed scenes. \param change of scenes without what stands around
+    [[nodiscard]] virtual SiteCase changed(const ChangeScene& change) const = 0;
     /// Measures all rooms, as `coverage` does, with these sensors added to each.
     [[nodiscard]] virtual SiteFigures measure(std::span<const std::vector<Sensor>> added,
                                               const CoverageOptions& options) const = 0;
@@ -129,6 +128,11 @@ struct ArrangeSite {
 
     [[nodiscard]] bool isOneRoom() const { return rooms.size() == 1 && sight == nullptr; }
 };
+
+/// Returns the site as it is. \pre the site outlives it
+SiteCase caseOf(const ArrangeSite& site);
+/// Returns the site with changed scenes, and the sight between them.
+SiteCase caseOf(const ArrangeSite& site, const ChangeScene& change);
 
 /// Returns the served elements of each room that has floor.
 /// \param served of all rooms, one after another

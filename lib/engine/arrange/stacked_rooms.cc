@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The problem of a robust search: the cells of all cases, one after another.
+// The problem of a search in several cases: the cells of all of them, one after another.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -23,7 +23,7 @@ std::uint64_t totalOf(const std::vector<std::uint32_t>& weights) {
 }  // namespace
 
 void CoverageModel::stackCases() {
-    if (options_.robust.of == RobustChoice::Of::Failures)
+    if (options_.cases->failures())
         stackFailures();
     else
         stackRooms();
@@ -31,27 +31,9 @@ void CoverageModel::stackCases() {
     total_ = isWorstCase() ? cases_.totalOf(0) : problem_.totalWeight();
 }
 
-SiteCase CoverageModel::siteIn(std::size_t number) const {
-    const RobustChoice& robust = options_.robust;
-    if (robust.of == RobustChoice::Of::Crowd) {
-        std::vector<Crowd> crowds;
-        for (const SiteRoom& room : site_.rooms)
-            crowds.push_back(room.goals.crowds.empty() ? Crowd() : room.goals.crowds[number]);
-        if (site_.sight != nullptr) return site_.sight->crowded(crowds);
-        const Scene& room = *site_.rooms.front().scene;
-        return {{std::make_shared<const Scene>(withCrowd(room, crowds.front()))}, nullptr};
-    }
-    const bool is_other = robust.of == RobustChoice::Of::Rooms && number > 0;
-    const ArrangeSite& site = is_other ? *robust.rooms[number - 1].site : site_;
-    SiteCase in{{}, std::shared_ptr<const RoomSight>(std::shared_ptr<void>(), site.sight)};
-    for (const SiteRoom& room : site.rooms) in.rooms.push_back(room.scene);
-    return in;
-}
-
 void CoverageModel::stackRooms() {
-    const RobustChoice& robust = options_.robust;
-    const bool has_sites = robust.of == RobustChoice::Of::Rooms;
-    view_cases_ = has_sites ? 1 + robust.rooms.size() : std::size_t{kRobustSamples};
+    const LayoutCases& cases = *options_.cases;
+    view_cases_ = cases.sites();
     for (Room& room : rooms_) {
         if (room.model == nullptr) continue;
         room.copies.clear();
@@ -66,16 +48,16 @@ void CoverageModel::stackRooms() {
     std::vector<double> weights;
     std::vector<std::uint16_t> achieved;
     bool is_even = true;  // the cells of all rooms are of equal size
+    std::vector<std::vector<SiteSensor>> sensors(view_cases_);
     for (std::size_t number = 0; number < view_cases_; ++number) {
         const std::size_t begin = weights.size(), first = stack.size();
-        const SiteCase site = siteIn(number);
+        const SiteCase site = cases.siteIn(site_, number);
         case_sights_.push_back(site.sight);
+        sensors[number] = standingIn(site);
         for (std::size_t i = 0; i < rooms_.size(); ++i) {
             if (rooms_[i].model == nullptr) continue;
             RoomModel& model = *rooms_[i].model;
-            // Equal rooms share their cases.
-            CaseRoom& in = number < model.cases().size() ? *model.cases()[number]
-                                                         : model.addCase(*site.rooms[i]);
+            CaseRoom& in = model.addCase(*site.rooms[i], i);
             const Coverage standing = measureCoverage(
                 in.scene, in.worlds,
                 {.cells = searchCells(options_), .plane = options_.plane, .exact = false});
@@ -107,9 +89,7 @@ void CoverageModel::stackRooms() {
         const auto own = std::span(weights).subspan(
             cases_.blocks[number].first, cases_.blocks[number].end - cases_.blocks[number].first);
         const double total = std::accumulate(own.begin(), own.end(), 0.0);
-        if (total <= 0)
-            throw UnmetError("nothing to cover in " +
-                             (number == 0 ? robust.name : robust.rooms[number - 1].name));
+        if (total <= 0) throw UnmetError("nothing to cover in " + cases.nameOf(number));
         if (number == 0) first_total = total;
         if (total != first_total)
             for (double& weight : own) weight *= first_total / total;
@@ -120,7 +100,8 @@ void CoverageModel::stackRooms() {
         setAreas(std::move(weights));
     problem_.achieved = std::move(achieved);
     problem_.standing = CellSet(problem_.cells());
-    if (joinsRooms()) countStandingBeyond();
+    for (std::size_t number = 0; joinsRooms() && number < view_cases_; ++number)
+        countStandingBeyond(number, sensors[number]);
 }
 
 void CoverageModel::stackFailures() {
@@ -135,13 +116,13 @@ void CoverageModel::stackFailures() {
         for (const SiteSensor& sensor : sensors)
             standing_ids_.push_back(wholeId(site_, i, sensor.sensor.id));
     }
-    if (unit_ > 1)
-        throw UsageError("--robust failures: receivers hear a tag together; leave them out");
-    const auto failures = static_cast<std::size_t>(options_.robust.failures);
+    const std::string option(options_.cases->option());
+    if (unit_ > 1) throw UsageError(option + ": receivers hear a tag together; leave them out");
+    const auto failures = static_cast<std::size_t>(*options_.cases->failures());
     const std::size_t sensors = cases_.standing.size() + sensorsToPlace(groups_, kinds_).size();
     if (failures >= sensors)
         throw UsageError(
-            "--robust failures:" + std::to_string(failures) + ": there " +
+            option + ':' + std::to_string(failures) + ": there " +
             (sensors == 1 ? "is one sensor" : "are " + std::to_string(sensors) + " sensors") +
             ", and one at least has to work");
     if (const auto total = static_cast<double>(totalOf(problem_.weights)); total > kMaxTotal)
@@ -151,7 +132,7 @@ void CoverageModel::stackFailures() {
     FailureProblem made = failureProblem(problem_, problem_.achieved, sensors, failures);
     problem_ = std::move(made.problem);
     problem_.standing = CellSet(problem_.cells());
-    cases_.failures = options_.robust.failures;
+    cases_.failures = static_cast<int>(failures);
     cases_.least_total = made.least_total;
     for (std::size_t m = 1; m <= failures; ++m)
         for (Room& room : rooms_) {
@@ -167,31 +148,26 @@ void CoverageModel::stackFailures() {
     }
 }
 
-RobustValues CoverageModel::robustValuesOf(std::span<const CountedView> views,
-                                           std::span<const Placement> sensors) const {
+CaseShares CoverageModel::sharesInCases(std::span<const CountedView> views,
+                                        std::span<const Placement> sensors) const {
     std::vector<SensorCells> cells;
     for (const CountedView& view : views) cells.push_back({&view.cells, view.multiplicity});
     const CaseValues values(cases_, cells);
     const CaseValue worst = values.worst();
     const auto unit = static_cast<double>(cases_.totalOf(0));
-    RobustValues robust;
-    robust.worst = static_cast<double>(worst.value) / unit;
-    robust.mean = static_cast<double>(valueOf(views)) / static_cast<double>(problem_.totalWeight());
-    if (cases_.failures > 0) {
-        robust.shares = {robust.worst};
-    } else {
+    CaseShares in;
+    in.worst = static_cast<double>(worst.value) / unit;
+    in.mean = static_cast<double>(valueOf(views)) / static_cast<double>(problem_.totalWeight());
+    if (cases_.failures > 0)
+        in.shares = {in.worst};
+    else
         for (const std::uint64_t value : values.ofBlocks())
-            robust.shares.push_back(static_cast<double>(value) / unit);
-        if (options_.robust.of == RobustChoice::Of::Rooms) {
-            robust.names = {options_.robust.name};
-            for (const NamedSite& site : options_.robust.rooms) robust.names.push_back(site.name);
-        }
-    }
+            in.shares.push_back(static_cast<double>(value) / unit);
     for (const std::size_t failed : worst.failed)
-        robust.failed.push_back(failed < standing_ids_.size()
-                                    ? standing_ids_[failed]
-                                    : wholeId(site_, sensors[failed - standing_ids_.size()]));
-    return robust;
+        in.failed.push_back(failed < standing_ids_.size()
+                                ? standing_ids_[failed]
+                                : wholeId(site_, sensors[failed - standing_ids_.size()]));
+    return in;
 }
 
 }  // namespace ispace

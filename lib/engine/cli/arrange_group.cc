@@ -5,15 +5,30 @@
 #include <iterator>
 #include <utility>
 
+#include "site/arranged_site.h"
+
 namespace ispace {
+
+std::shared_ptr<const ArrangeSite> searchedSite(const SiteInput& input, const ArrangeOptions& how,
+                                                std::vector<RoomGoals> goals) {
+    if (!input.isOneRoom()) {
+        const auto building =
+            std::make_shared<const BuildingSite>(input.building, how, std::move(goals));
+        return {building, &building->site()};
+    }
+    ArrangeSite site;
+    site.rooms.push_back({"", input.rooms().front(), goals.empty() ? RoomGoals() : goals.front()});
+    return std::make_shared<const ArrangeSite>(std::move(site));
+}
 
 ArrangeExtensions::ArrangeExtensions(std::span<const ArrangeRow> rows) {
     members_.reserve(rows.size());
     for (const ArrangeRow& row : rows) members_.push_back({std::string(row.extension), row.make()});
 }
 
-void ArrangeExtensions::declare(CommandLine& line) {
+void ArrangeExtensions::declare(CommandLine& line, ArrangeGroup::Place place) {
     for (const Member& member : members_) {
+        if (member.group->place() != place) continue;
         line.extension(member.extension);
         member.group->declare(line);
     }
@@ -48,7 +63,7 @@ std::vector<std::string> ArrangeExtensions::notes(const ArrangeOptions& how) con
     return all;
 }
 
-void ArrangeExtensions::aim(const SiteInput& input, ArrangeOptions& how,
+void ArrangeExtensions::aim(const ArrangeInput& input, ArrangeOptions& how,
                             std::span<RoomGoals> goals) const {
     for (const Member& member : members_)
         if (member.group->isAsked()) member.group->aim(input, how, goals);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a folder of lib/extensions asks of the layouts of arrange besides an objective: options,
-// rules for the search, and what becomes of them in a layout. See cli/extension.h.
+// rules for the search or the cases that judge a layout, and what becomes of them in a layout. See
+// cli/extension.h.
 #pragma once
 
 #include <memory>
@@ -11,10 +12,26 @@
 
 #include "arrange/arrange.h"
 #include "cli/command_line.h"
+#include "cli/common_options.h"
 #include "cli/site_operands.h"
 #include "site/site_coverage.h"
 
 namespace ispace {
+
+/// The inputs of a search, as they were read.
+struct ArrangeInput {
+    const SiteInput& site;
+    const CommonOptions& common;
+    const SceneRules& rules;  ///< for further sites
+    std::span<const std::string>
+        fixed;                        ///< sensors of the layout that keep their poses, see --fixed
+    std::vector<std::string>& files;  ///< receives those that are read, for -MD
+};
+
+/// Returns the site of a search, which owns all but the scenes of the input. \param goals by room;
+/// empty: all floor
+std::shared_ptr<const ArrangeSite> searchedSite(const SiteInput& input, const ArrangeOptions& how,
+                                                std::vector<RoomGoals> goals = {});
 
 /// A layout that was found, and the site with it.
 struct ArrangedSite {
@@ -43,6 +60,10 @@ struct ArrangeFindings {
 class ArrangeGroup {
   public:
     virtual ~ArrangeGroup() = default;
+    /// Where its options stand in --help, and their words in histories: after those of goals, or
+    /// before those of the search.
+    enum class Place { Goals, Cases };
+    [[nodiscard]] virtual Place place() const { return Place::Goals; }
     /// Declares the options, bound to members. The group begins with line.group(HEADING).
     virtual void declare(CommandLine& line) = 0;
     /// Checks the options with each other and with those of the tool. Opens no file.
@@ -56,9 +77,10 @@ class ArrangeGroup {
     [[nodiscard]] virtual std::vector<std::string> notes(const ArrangeOptions& /*how*/) const {
         return {};
     }
-    /// Adds its rules to the goals of the rooms, and to the options what is asked of any room.
-    /// \pre isAsked() \throws UsageError for names that the site lacks
-    virtual void aim(const SiteInput& input, ArrangeOptions& how,
+    /// Adds its rules to the goals of the rooms, and to the options what is asked of any room, or
+    /// the cases (ArrangeOptions::cases).
+    /// \pre isAsked() \throws UsageError for names that the site lacks, and as readers of files
+    virtual void aim(const ArrangeInput& input, ArrangeOptions& how,
                      std::span<RoomGoals> goals) const = 0;
     /// Judges a layout. \pre isAsked()
     virtual void judge(const ArrangedSite& site, ArrangeFindings& findings) const = 0;
@@ -75,13 +97,13 @@ class ArrangeExtensions {
   public:
     /// \param rows in the order of `--help` and of reports
     explicit ArrangeExtensions(std::span<const ArrangeRow> rows);
-    void declare(CommandLine& line);
+    void declare(CommandLine& line, ArrangeGroup::Place place);
     /// As those of ArrangeGroup, for all of them, or those that are asked.
     void take(const CommandLine& line, const ArrangeOptions& how) const;
     [[nodiscard]] bool isAsked() const;
     [[nodiscard]] std::vector<std::string_view> ofFloor() const;
     [[nodiscard]] std::vector<std::string> notes(const ArrangeOptions& how) const;
-    void aim(const SiteInput& input, ArrangeOptions& how, std::span<RoomGoals> goals) const;
+    void aim(const ArrangeInput& input, ArrangeOptions& how, std::span<RoomGoals> goals) const;
     [[nodiscard]] ArrangeFindings judge(const ArrangedSite& site) const;
 
   private:

@@ -48,12 +48,12 @@ BuildingSite::BuildingSite(const SiteScene& building, const ArrangeOptions& opti
 
 namespace {
 
-/// A building with people in it, and the sight between its storeys.
-struct Crowded {
-    Crowded(SiteScene scene, double plane)
+/// A building with other scenes, and the sight between its storeys.
+struct ChangedBuilding {
+    ChangedBuilding(SiteScene scene, double plane)
         : building(std::move(scene)), coupling(building), sight(coupling, plane) {}
-    Crowded(const Crowded&) = delete;
-    Crowded& operator=(const Crowded&) = delete;
+    ChangedBuilding(const ChangedBuilding&) = delete;
+    ChangedBuilding& operator=(const ChangedBuilding&) = delete;
 
     SiteScene building;
     Coupling coupling;
@@ -62,13 +62,11 @@ struct Crowded {
 
 }  // namespace
 
-SiteCase BuildingSite::crowded(std::span<const Crowd> crowds) const {
+SiteCase BuildingSite::changed(const ChangeScene& change) const {
     SiteScene changed = building_;
-    for (std::size_t i = 0; i < crowds.size(); ++i)
-        if (!crowds[i].empty())
-            changed.scenes[i] =
-                std::make_shared<const Scene>(withCrowd(*building_.scenes[i], crowds[i]));
-    const auto all = std::make_shared<Crowded>(std::move(changed), plane_);
+    for (std::size_t i = 0; i < changed.scenes.size(); ++i)
+        changed.scenes[i] = change(i, building_.scenes[i]);
+    const auto all = std::make_shared<ChangedBuilding>(std::move(changed), plane_);
     return {all->coupling.floors(highest_), std::shared_ptr<const RoomSight>(all, &all->sight)};
 }
 

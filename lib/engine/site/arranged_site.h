@@ -33,7 +33,7 @@ class BuildingSite final : public SiteSight {
     /// Returns the rooms; their sight is this object.
     [[nodiscard]] const ArrangeSite& site() const { return site_; }
 
-    [[nodiscard]] bool joinsRooms() const override { return sight_.hasOpenings(); }
+    [[nodiscard]] bool joinsRooms() const override { return sight_.joinsRooms(); }
     [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
                               std::size_t to) const override {
         return sight_.maySee(from, sensor, to);
@@ -42,7 +42,7 @@ class BuildingSite final : public SiteSight {
               CellParts& parts) const override {
         sight_.look(from, turned, to, grid, parts);
     }
-    [[nodiscard]] SiteCase crowded(std::span<const Crowd> crowds) const override;
+    [[nodiscard]] SiteCase changed(const ChangeScene& change) const override;
     /// As measureSite().
     [[nodiscard]] SiteFigures measure(std::span<const std::vector<Sensor>> added,
                                       const CoverageOptions& options) const override;

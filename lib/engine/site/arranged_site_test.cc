@@ -379,27 +379,6 @@ TEST(BuildingSite, ATargetThatIsMetExactlyIsReached) {
     EXPECT_NEAR(result.found.candidate_value, 0.2, 1e-6);
 }
 
-TEST(BuildingSite, AFailedSensorMayBeInAnyStorey) {
-    const SiteScene building = twoStoreys();
-    ArrangeOptions options = coarse();
-    options.robust = {.of = RobustChoice::Of::Failures, .failures = 1};
-    const ArrangedBuilding result = arrangedIn(building, {lasers(3)}, options);
-    ASSERT_TRUE(result.found.robust.has_value());
-    double worst = 1;
-    CoverageOptions measure;
-    measure.cells = options.cells.value();
-    measure.exact = false;
-    for (std::size_t failed = 0; failed < result.found.sensors.size(); ++failed) {
-        ArrangedBuilding rest = result;
-        rest.found.sensors.erase(rest.found.sensors.begin() + static_cast<std::ptrdiff_t>(failed));
-        worst = std::min(worst,
-                         measureSite(written(building, rest), measure).coverage.grid.value_or(0));
-    }
-    EXPECT_NEAR(result.found.robust->worst, worst, 1e-5);
-    ASSERT_EQ(result.found.robust->failed.size(), 1U);
-    EXPECT_NE(result.found.robust->failed[0].find('/'), std::string::npos) << "across the site";
-}
-
 TEST(BuildingSite, StandingSensorsAndPendingOnesKeepTheirStoreys) {
     const SiteScene empty = twoStoreys();
     const Document layout = readRecordText(

@@ -34,7 +34,7 @@ class StoreySight final : public RoomSight {
     StoreySight(const Coupling& coupling, double plane);
 
     /// Returns true if there are openings between storeys.
-    [[nodiscard]] bool hasOpenings() const { return !coupling_.openings().empty(); }
+    [[nodiscard]] bool joinsRooms() const override { return !coupling_.openings().empty(); }
     [[nodiscard]] bool maySee(std::size_t from, const Sensor& sensor,
                               std::size_t to) const override;
     void look(std::size_t from, std::span<const Sensor> turned, std::size_t to, const Grid& grid,

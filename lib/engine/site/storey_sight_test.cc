@@ -44,7 +44,7 @@ TEST(StoreySight, CellsAreThoseOfTheRegionsSeen) {
     const SiteScene empty = placed(kTurned, "");
     const Coupling coupling(empty);
     const StoreySight sight(coupling, 0);
-    EXPECT_TRUE(sight.hasOpenings());
+    EXPECT_TRUE(sight.joinsRooms());
     std::mt19937_64 engine(3);
     const auto uniform = [&engine](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(engine);

@@ -36,7 +36,7 @@ class LayoutRules final : public ArrangeGroup {
                    Enters::History);
     }
 
-    void take(const CommandLine& line, const ArrangeOptions& how) override {
+    void take(const CommandLine& line, const ArrangeOptions& /*how*/) override {
         for (const std::string& text : facing_words_)
             facing_.push_back(ofOption("--facing", [&] { return parseFacing(text); }));
         for (const std::string& text : privacy_words_)
@@ -55,8 +55,6 @@ class LayoutRules final : public ArrangeGroup {
                                                "--export-mps"};
         if (!facing_.empty()) refuse("--facing", kNotFacing);
         if (!privacy_.empty()) refuse("--privacy", kNotPrivate);
-        if (!privacy_.empty() && how.robust.of == RobustChoice::Of::Rooms)
-            throw UsageError("--privacy is about one room: leave out --robust rooms");
         has_zones_ = line.given("--zone");
     }
 
@@ -77,8 +75,9 @@ class LayoutRules final : public ArrangeGroup {
         return notes;
     }
 
-    void aim(const SiteInput& input, ArrangeOptions& how,
+    void aim(const ArrangeInput& of, ArrangeOptions& how,
              std::span<RoomGoals> goals) const override {
+        const SiteInput& input = of.site;
         const ByRoom<FacingRule> facing = facingByRoom(input);
         for (std::size_t i = 0; i < facing.size(); ++i) {
             if (facing[i].empty()) continue;

@@ -71,8 +71,8 @@ void refuse(const CommandLine& line, std::span<const std::string_view> options) 
 /// Options of searches for covered floor.
 void refuseOfCoverage(const CommandLine& line, std::span<const std::string_view> others) {
     constexpr std::string_view kOther[] = {
-        "--target", "--budget", "--refine",     "--connected",   "--reso",  "--judge",
-        "--proof",  "--shard",  "--resume",     "--robust",      "--crowd", "--curve",
+        "--target", "--budget", "--refine",     "--connected",   "--reso",
+        "--judge",  "--proof",  "--shard",      "--resume",      "--curve",
         "--heat",   "--trace",  "--export-mps", "--alternatives"};
     refuse(line, kOther);
     refuse(line, others);

@@ -16,8 +16,8 @@
 #include "base/run_files.h"
 #include "cli/common_options.h"
 #include "cli/storey_operands.h"
-#include "coverage/crowd.h"
 #include "env/body_shapes.h"
+#include "extensions/robustness/crowd.h"
 #include "scene/placement_schemas.h"
 #include "scene/run/run_reader.h"
 #include "sim/world.h"
@@ -31,7 +31,7 @@ constexpr std::string_view kWander = "wander:";
 
 /// Returns the records of the scene without people, what they carry, and sensors, and with a
 /// wanderer for each of the crowd.
-std::vector<Record> recordsWith(const Crowd& crowd, const Scene& scene) {
+std::vector<Record> recordsWith(const robustness::Crowd& crowd, const Scene& scene) {
     std::vector<Record> records;
     for (const Record& record : scene.records)
         if (record.keyword() != "human" && sensorKind(record.keyword()) == nullptr &&
@@ -53,8 +53,8 @@ std::vector<Record> recordsWith(const Crowd& crowd, const Scene& scene) {
 void visitWanderers(const PathsChoice& choice, const Scene& scene, std::uint64_t seed,
                     const PersonVisit& visit) {
     constexpr SimTime kStep = std::chrono::milliseconds(20);
-    const Crowd crowd =
-        CrowdFloor(scene).draw(static_cast<std::size_t>(choice.people), {.seed = seed});
+    const robustness::Crowd crowd =
+        robustness::CrowdFloor(scene).draw(static_cast<std::size_t>(choice.people), {.seed = seed});
     Document rest;
     rest.records = recordsWith(crowd, scene);
     const DeviceCatalogue& devices = devicesFor({&rest});

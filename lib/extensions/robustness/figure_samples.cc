@@ -12,23 +12,30 @@
 
 namespace ispace::robustness {
 
+namespace {
+
+double meanOf(std::span<const double> values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+double standardErrorOf(std::span<const double> values) {
+    if (values.size() < 2) return 0;
+    const auto count = static_cast<double>(values.size());
+    const double middle = meanOf(values);
+    double squares = 0;
+    for (const double value : values) squares += (value - middle) * (value - middle);
+    return std::sqrt(squares / (count - 1) / count);
+}
+
 double FigureSpread::quantile(double share) const {
     const auto count = static_cast<double>(values.size());
     const double rank = std::clamp(std::ceil(share * count - 1e-9), 1.0, count);
     return values[static_cast<std::size_t>(rank) - 1];
 }
 
-double FigureSpread::mean() const {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-double FigureSpread::standardError() const {
-    const auto count = static_cast<double>(values.size());
-    if (values.size() < 2) return 0;
-    double squares = 0;
-    for (const double value : values) squares += (value - mean()) * (value - mean());
-    return std::sqrt(squares / (count - 1) / count);
-}
+double FigureSpread::mean() const { return meanOf(values); }
 
 std::vector<Requirement> figuresOf(const CoverageReport& report,
                                    std::span<const Requirement> requirements) {

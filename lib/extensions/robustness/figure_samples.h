@@ -18,9 +18,9 @@
 
 #include "base/error.h"
 #include "coverage/coverage.h"
-#include "coverage/crowd.h"
-#include "coverage/mounting.h"
 #include "coverage/requirement.h"
+#include "extensions/robustness/crowd.h"
+#include "extensions/robustness/mounting.h"
 #include "scene/scene.h"
 
 namespace ispace::robustness {
@@ -29,6 +29,9 @@ namespace ispace::robustness {
 /// and those of the requirements, each once, as requirements of 0.
 std::vector<Requirement> figuresOf(const CoverageReport& report,
                                    std::span<const Requirement> requirements);
+
+/// Returns the standard error of the mean of independent values; 0 for a single one.
+double standardErrorOf(std::span<const double> values);
 
 /// The values of a figure in several samples.
 struct FigureSpread {
@@ -42,8 +45,6 @@ struct FigureSpread {
     /// of all for 0.
     [[nodiscard]] double quantile(double share) const;
     [[nodiscard]] double mean() const;
-    /// Returns the standard error of the mean of independent values; 0 for a single one.
-    [[nodiscard]] double standardError() const;
 };
 
 /// Figures of random variants of a scene.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "extensions/robustness/failures.h"
+#include "extensions/robustness/robust_cases.h"
 #include "support/test_arrange.h"
 
 namespace ispace::robustness {
@@ -14,8 +15,7 @@ TEST(Robust, ValueOfFailuresIsThatOfCoverage) {
     const auto groups = groupsOf(scene, {"laser,range=4,fov=200:3"});
     for (const int failures : {1, 2}) {
         ArrangeOptions options = coarse();
-        options.robust.of = RobustChoice::Of::Failures;
-        options.robust.failures = failures;
+        options.cases = std::make_shared<const SensorFailures>(true, failures);
         const Arrangement found = arranged(scene, groups, options);
         const Scene whole = withPlaced(scene, groups, found.sensors);
         RayScenes worlds(whole.environment);
@@ -23,9 +23,9 @@ TEST(Robust, ValueOfFailuresIsThatOfCoverage) {
         const auto losses = worstFailures(whole, coverage, failures, {});
         EXPECT_NEAR(*found.value, losses[0].worst, 1e-9);
         EXPECT_NEAR(found.candidate_value, losses[0].worst, 1e-9);
-        EXPECT_EQ(found.robust->failed.size(), static_cast<std::size_t>(failures));
+        EXPECT_EQ(found.cases->failed.size(), static_cast<std::size_t>(failures));
         EXPECT_GE(found.bound, losses[0].worst);
-        EXPECT_GE(found.robust->mean, found.robust->worst);
+        EXPECT_GE(found.cases->mean, found.cases->worst);
         // More than the plain layout keeps.
         ArrangeOptions plain = coarse();
         const Scene other = withPlaced(scene, groups, arranged(scene, groups, plain).sensors);

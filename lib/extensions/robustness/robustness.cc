@@ -15,7 +15,7 @@
 #include "base/number.h"
 #include "cli/progress_bar.h"
 #include "cli/storey_operands.h"
-#include "coverage/crowd.h"
+#include "extensions/robustness/crowd.h"
 #include "extensions/robustness/robustness_report.h"
 #include "extensions/robustness/site_robustness.h"
 #include "site/storey_people.h"

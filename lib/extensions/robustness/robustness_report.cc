@@ -61,7 +61,7 @@ void writeSampled(JsonWriter& json, const SampledFigures& sampled,
         json.key("exact").value(figure.is_exact);
         writeShare(json, "planned", figure.planned);
         writeShare(json, "mean", figure.mean());
-        if (has_error) writeShare(json, "error", figure.standardError());
+        if (has_error) writeShare(json, "error", standardErrorOf(figure.values));
         for (const NamedQuantile& one : kQuantiles)
             writeShare(json, one.key, figure.quantile(one.share));
         json.endObject();
@@ -169,7 +169,7 @@ std::vector<TextRow> spreadRows(const SampledFigures& sampled, bool has_error) {
         for (const NamedQuantile& one : kQuantiles)
             row.push_back(percentText(figure.quantile(one.share)));
         row.push_back(percentText(figure.mean()));
-        if (has_error) row.push_back(percentText(figure.standardError()));
+        if (has_error) row.push_back(percentText(standardErrorOf(figure.values)));
         rows.push_back(std::move(row));
     }
     return rows;

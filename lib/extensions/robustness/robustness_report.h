@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "coverage/mounting.h"
 #include "extensions/robustness/failures.h"
 #include "extensions/robustness/figure_samples.h"
+#include "extensions/robustness/mounting.h"
 #include "report/report_section.h"
 
 namespace ispace::robustness {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "coverage/crowd.h"
 #include "coverage/requirement.h"
+#include "extensions/robustness/crowd.h"
 #include "extensions/robustness/failures.h"
 #include "extensions/robustness/figure_samples.h"
 #include "site/site_coverage.h"

@@ -15,8 +15,8 @@
 
 #include "base/error.h"
 #include "base/number.h"
-#include "coverage/crowd.h"
 #include "extensions/presence/people_paths.h"
+#include "extensions/robustness/crowd.h"
 #include "geom/tolerance.h"
 #include "scene/bodies.h"
 #include "sense/motion_sense.h"
@@ -35,7 +35,7 @@ double milliseconds(double seconds) {
 }  // namespace
 
 double bodyRadiusAt(double height) {
-    static const std::vector<BodyPart> parts = humanParts(kUsualHeight);
+    static const std::vector<BodyPart> parts = humanParts(robustness::kUsualHeight);
     double radius = 0;
     for (const BodyPart& part : parts) {
         if (height < part.bottom || height > part.top) continue;
@@ -133,7 +133,7 @@ bool TrackDemand::isHidden(std::size_t place, Point3 from, double height) const 
     const PersonMoment& target = moments_.places[place];
     const Point2 foot = from.onFloor();
     const Vec2 way = target.place - foot;
-    const double square = dot(way, way), widest = humanRadius(kUsualHeight);
+    const double square = dot(way, way), widest = humanRadius(robustness::kUsualHeight);
     const std::vector<std::size_t>& present = by_moment_[target.moment];
     return std::any_of(present.begin(), present.end(), [&](std::size_t i) {
         if (i == place) return false;

@@ -6,11 +6,12 @@
 #include <memory>
 #include <utility>
 
-#include "arrange/case_room.h"
-#include "coverage/crowd.h"
+#include "env/level.h"
+#include "extensions/robustness/figure_samples.h"
+#include "extensions/robustness/robust_cases.h"
 #include "support/test_arrange.h"
 
-namespace ispace {
+namespace ispace::robustness {
 namespace {
 
 const std::string kMovedRoom =
@@ -21,19 +22,17 @@ const std::string kMovedRoom =
     "screen id=s1 at=0,1 size=0.05,3,2\n"
     "zone id=left at=-2,0 size=4,6\n";
 
-RobustChoice ofRooms(bool is_worst) {
-    RobustChoice robust;
-    robust.of = RobustChoice::Of::Rooms;
-    robust.is_worst = is_worst;
-    robust.name = "room.env";
-    ArrangeSite moved;
-    moved.rooms.push_back({"", std::make_shared<const Scene>(roomScene(kMovedRoom))});
-    robust.rooms.push_back({"moved.env", std::make_shared<const ArrangeSite>(std::move(moved))});
-    return robust;
+const Scene& movedRoom() {
+    static const Scene moved = roomScene(kMovedRoom);
+    return moved;
 }
 
-const Scene& movedRoom(const ArrangeOptions& options) {
-    return *options.robust.rooms[0].site->rooms[0].scene;
+std::shared_ptr<const LayoutCases> ofRooms(bool is_worst) {
+    ArrangeSite moved;
+    moved.rooms.push_back({"", std::make_shared<const Scene>(movedRoom())});
+    return std::make_shared<const OtherSites>(
+        is_worst, "room.env",
+        std::vector<NamedSite>{{"moved.env", std::make_shared<const ArrangeSite>(moved)}});
 }
 
 double coverageOf(const Scene& scene) {
@@ -48,14 +47,14 @@ TEST(Robust, ValuesInRoomsAreThoseOfCoverage) {
     const auto groups = groupsOf(scene, kLasers);
     for (const bool is_worst : {true, false}) {
         ArrangeOptions options = coarse();
-        options.robust = ofRooms(is_worst);
+        options.cases = ofRooms(is_worst);
         const Arrangement found = arranged(scene, groups, options);
-        ASSERT_TRUE(found.robust);
+        ASSERT_TRUE(found.cases);
         const double here = coverageOf(withPlaced(scene, groups, found.sensors));
-        const double moved = coverageOf(withPlaced(movedRoom(options), groups, found.sensors));
-        ASSERT_EQ(found.robust->shares.size(), 2U);
-        EXPECT_NEAR(found.robust->shares[0], here, 1e-9);
-        EXPECT_NEAR(found.robust->shares[1], moved, 1e-9);
+        const double moved = coverageOf(withPlaced(movedRoom(), groups, found.sensors));
+        ASSERT_EQ(found.cases->shares.size(), 2U);
+        EXPECT_NEAR(found.cases->shares[0], here, 1e-9);
+        EXPECT_NEAR(found.cases->shares[1], moved, 1e-9);
         const double value = is_worst ? std::min(here, moved) : (here + moved) / 2;
         EXPECT_NEAR(*found.value, value, 1e-6);
         EXPECT_NEAR(found.candidate_value, value, 1e-6);
@@ -69,12 +68,12 @@ TEST(Robust, TheWorstRoomGainsAgainstThePlainSearch) {
     const auto groups = groupsOf(scene, {"laser,range=4,fov=200"});
     ArrangeOptions options = coarse(Optimizer::Exact);
     const Arrangement plain = arranged(scene, groups, options);
-    options.robust = ofRooms(true);
+    options.cases = ofRooms(true);
     const Arrangement robust = arranged(scene, groups, options);
-    const Scene& moved = movedRoom(options);
+    const Scene& moved = movedRoom();
     const double before =
         std::min(plain.coverage, coverageOf(withPlaced(moved, groups, plain.sensors)));
-    EXPECT_GT(robust.robust->worst, before + 0.001);
+    EXPECT_GT(robust.cases->worst, before + 0.001);
     EXPECT_EQ(robust.candidate_value, robust.bound);  // proven
     for (const Placement& sensor : robust.sensors) EXPECT_GT(sensor.pose.position.z, 0);
 }
@@ -83,10 +82,10 @@ TEST(Robust, SitesAreFreeInAllRooms) {
     const Scene scene = roomScene();
     const auto groups = groupsOf(scene, {"laser,range=4,fov=200:3"});
     ArrangeOptions options = coarse();
-    options.robust = ofRooms(false);
+    options.cases = ofRooms(false);
     options.wants_trace = true;
     const Arrangement found = arranged(scene, groups, options);
-    const Environment& moved = movedRoom(options).environment;
+    const Environment& moved = movedRoom().environment;
     for (const TriedPose& tried : found.tried)
         EXPECT_FALSE(
             moved.level(tried.pose.position.z)->isInsideSolid(tried.pose.position.onFloor()));
@@ -97,22 +96,20 @@ TEST(Robust, NoFailureIsThePlainSearch) {
     const auto groups = groupsOf(scene, kLasers);
     ArrangeOptions options = coarse();
     const Arrangement plain = arranged(scene, groups, options);
-    options.robust.of = RobustChoice::Of::Failures;
     for (const bool is_worst : {true, false}) {
-        options.robust.is_worst = is_worst;
+        options.cases = std::make_shared<const SensorFailures>(is_worst, 0);
         const Arrangement robust = arranged(scene, groups, options);
         EXPECT_DOUBLE_EQ(robust.candidate_value, plain.candidate_value);
-        EXPECT_NEAR(robust.robust->worst, plain.coverage, 1e-12);
-        EXPECT_NEAR(robust.robust->mean, plain.coverage, 1e-12);
-        EXPECT_TRUE(robust.robust->failed.empty());
+        EXPECT_NEAR(robust.cases->worst, plain.coverage, 1e-12);
+        EXPECT_NEAR(robust.cases->mean, plain.coverage, 1e-12);
+        EXPECT_TRUE(robust.cases->failed.empty());
     }
 }
 
 TEST(Robust, AsManyFailuresAsSensorsAreRefused) {
     const Scene scene = roomScene();
     ArrangeOptions options = coarse();
-    options.robust.of = RobustChoice::Of::Failures;
-    options.robust.failures = 2;
+    options.cases = std::make_shared<const SensorFailures>(true, 2);
     EXPECT_THROW(arranged(scene, groupsOf(scene, kLasers), options), UsageError);
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"ultrasound:5"}), options), UsageError);
 }
@@ -124,23 +121,22 @@ TEST(Robust, ValuesOfMountingsAreThoseOfTheMountedSensors) {
         ArrangeOptions options = coarse();
         options.density = {2, 2, 4};
         options.seed = 3;
-        options.robust.of = RobustChoice::Of::Mounting;
-        options.robust.tolerance = {0.1, Angle::degrees(5)};
+        const MountingTolerance tolerance{0.1, Angle::degrees(5)};
         for (const bool is_worst : {true, false}) {
             if (!is_worst && std::string(sensors) != "laser,range=4,fov=200:2") continue;
-            options.robust.is_worst = is_worst;
+            options.cases = std::make_shared<const MountingCases>(is_worst, tolerance,
+                                                                  std::vector<std::uint64_t>{3});
             const Arrangement found = arranged(scene, groups, options);
             const Scene whole = withPlaced(scene, groups, found.sensors);
             double least = 1, sum = 0;
-            for (int k = 0; k < kRobustSamples; ++k) {
-                const SiteErrors errors(scene.environment, options.robust.tolerance, 3,
-                                        static_cast<std::uint64_t>(k));
+            for (std::size_t k = 0; k < kSearchedSamples; ++k) {
+                const auto errors = options.cases->errorsIn(scene.environment, 0, k);
                 Scene mounted = whole;
-                for (Sensor& sensor : mounted.sensors) sensor.pose = errors.mounted(sensor);
+                for (Sensor& sensor : mounted.sensors) sensor.pose = errors->actual(sensor);
                 const double share = coverageOf(mounted);
-                EXPECT_NEAR(found.robust->shares[static_cast<std::size_t>(k)], share, 1e-9);
+                EXPECT_NEAR(found.cases->shares[k], share, 1e-9);
                 least = std::min(least, share);
-                sum += share / kRobustSamples;
+                sum += share / kSearchedSamples;
             }
             EXPECT_NEAR(found.candidate_value, is_worst ? least : sum, 1e-6) << sensors;
             EXPECT_GE(found.bound, found.candidate_value);
@@ -153,10 +149,11 @@ TEST(Robust, WithoutErrorsAllMountingsAreThePlan) {
     const auto groups = groupsOf(scene, kLasers);
     ArrangeOptions options = coarse();
     const Arrangement plain = arranged(scene, groups, options);
-    options.robust.of = RobustChoice::Of::Mounting;
+    options.cases = std::make_shared<const MountingCases>(true, MountingTolerance{},
+                                                          std::vector<std::uint64_t>{0});
     const Arrangement robust = arranged(scene, groups, options);
     EXPECT_NEAR(robust.candidate_value, plain.candidate_value, 1e-9);
-    EXPECT_NEAR(robust.robust->mean, robust.robust->worst, 1e-9);
+    EXPECT_NEAR(robust.cases->mean, robust.cases->worst, 1e-9);
 }
 
 TEST(Robust, ValuesAmongPeopleAreThoseOfCoverage) {
@@ -164,16 +161,17 @@ TEST(Robust, ValuesAmongPeopleAreThoseOfCoverage) {
     const auto groups = groupsOf(scene, kLasers);
     ArrangeOptions options = coarse();
     options.seed = 7;
-    options.robust = {.of = RobustChoice::Of::Crowd, .is_worst = false, .people = 3};
+    options.cases = std::make_shared<const CrowdCases>(
+        false, 3, std::vector<std::vector<Crowd>>{crowdsIn(scene, 3, 7)});
     const Arrangement found = arranged(scene, groups, options);
     const Scene whole = withPlaced(scene, groups, found.sensors);
     const CrowdFloor floor(scene);
     double sum = 0;
-    for (std::uint64_t k = 0; k < kRobustSamples; ++k) {
+    for (std::uint64_t k = 0; k < kSearchedSamples; ++k) {
         const Crowd crowd = floor.draw(3, {.seed = 7, .frame = k});
         const double share = coverageOf(withCrowd(whole, crowd));
-        EXPECT_NEAR(found.robust->shares[k], share, 1e-9);
-        sum += share / kRobustSamples;
+        EXPECT_NEAR(found.cases->shares[k], share, 1e-9);
+        sum += share / kSearchedSamples;
     }
     EXPECT_NEAR(*found.value, sum, 1e-9);
     EXPECT_GE(found.bound, sum - 1e-9);
@@ -185,17 +183,17 @@ TEST(Robust, NobodyIsThePlainSearch) {
     const auto groups = groupsOf(scene, kLasers);
     ArrangeOptions options = coarse();
     const Arrangement plain = arranged(scene, groups, options);
-    options.robust = {.of = RobustChoice::Of::Crowd, .is_worst = false};
+    options.cases = std::make_shared<const CrowdCases>(
+        false, 0, std::vector<std::vector<Crowd>>{crowdsIn(scene, 0, 0)});
     const Arrangement robust = arranged(scene, groups, options);
     EXPECT_NEAR(robust.candidate_value, plain.candidate_value, 1e-9);
 }
 
 TEST(Robust, MeanHasItsStandardError) {
-    RobustValues values;
-    EXPECT_EQ(values.standardError(), 0);
-    values.shares = {0.2, 0.4};
-    EXPECT_NEAR(values.standardError(), 0.1, 1e-15);  // sqrt(2 * 0.1^2 / 1 / 2)
+    EXPECT_EQ(standardErrorOf({}), 0);
+    const std::vector<double> values = {0.2, 0.4};
+    EXPECT_NEAR(standardErrorOf(values), 0.1, 1e-15);  // sqrt(2 * 0.1^2 / 1 / 2)
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -14,7 +14,7 @@
 #include "base/random.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 /// Height of people whose height is not known, metres.
 constexpr double kUsualHeight = 1.7;
@@ -49,4 +49,4 @@ class CrowdFloor {
     std::vector<Segment2> lines_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/crowd.h"
+#include "extensions/robustness/crowd.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "scene/bodies.h"
 #include "scene/placement_schemas.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 namespace {
 
@@ -82,4 +82,4 @@ Crowd CrowdFloor::draw(std::size_t count, RandomKey key) const {
     return crowd;
 }
 
-}  // namespace ispace
+}  // namespace ispace::robustness

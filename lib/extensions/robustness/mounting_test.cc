@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/mounting.h"
+#include "extensions/robustness/mounting.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "support/test_mixed_room.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::robustness {
 namespace {
 
 using testing::kMixedRoom;
@@ -56,4 +56,4 @@ TEST(Mounting, CrossesNoWall) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::robustness

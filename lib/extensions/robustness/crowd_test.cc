@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/crowd.h"
+#include "extensions/robustness/crowd.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "scene/bodies.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::robustness {
 namespace {
 
 const std::string kHall =
@@ -59,4 +59,4 @@ TEST(Crowd, OfMorePeopleThanFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -13,7 +13,7 @@
 #include "base/random.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 /// The largest error with which sensors are mounted.
 struct MountingTolerance {
@@ -32,4 +32,4 @@ MountingTolerance parseTolerance(std::string_view text);
 Pose3 mountedPose(const Environment& environment, const Sensor& sensor,
                   const MountingTolerance& tolerance, RandomKey key);
 
-}  // namespace ispace
+}  // namespace ispace::robustness

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/mounting.h"
+#include "extensions/robustness/mounting.h"
 
 #include <cmath>
 #include <string>
@@ -13,7 +13,7 @@
 #include "record/schema.h"
 #include "sense/scan.h"
 
-namespace ispace {
+namespace ispace::robustness {
 
 namespace {
 
@@ -87,4 +87,4 @@ Pose3 mountedPose(const Environment& environment, const Sensor& sensor,
     return pose;
 }
 
-}  // namespace ispace
+}  // namespace ispace::robustness
