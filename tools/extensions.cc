@@ -19,6 +19,7 @@ const Extensions& extensions() {
         ISPACE_CALIBRATION
         ISPACE_CURTAINS
         // Kinds of sensors, in the order in which reports list them.
+        ISPACE_RADARS
         ISPACE_PIRS
         ISPACE_CONTACTS
         ISPACE_RFIDS

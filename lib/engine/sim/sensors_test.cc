@@ -28,7 +28,6 @@ TEST(SceneResources, HasTheMeshThatItsSensorsNeed) {
     EXPECT_TRUE(has_mesh("ranger at=1,1 pixels=4,4\n"));
     EXPECT_TRUE(has_mesh("tag at=1,1\n")) << "its echoes";
     EXPECT_TRUE(has_mesh("robot id=r1 model=pioneer-2dx at=0,0\n")) << "it has sonars";
-    EXPECT_TRUE(has_mesh("radar at=1,1\n"));
 }
 
 TEST(SensorReader, ReadsAtTheFirstStepOfAPeriod) {

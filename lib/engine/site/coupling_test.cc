@@ -78,7 +78,7 @@ TEST(Coupling, SensorsInASlabAreBlindAndFound) {
         EXPECT_TRUE(Coupling(building).isInsideSolid(0, {2, 3, 3}));
         EXPECT_TRUE(viewsBetweenStoreys(Coupling(building), {.plane = 1})[1].empty());
     }
-    EXPECT_EQ(findingsOfGround(at("radar", "2, 3, 3")).size(), 1U);
+    EXPECT_EQ(findingsOfGround(at("ultrasound", "2, 3, 3")).size(), 1U);
     EXPECT_TRUE(findingsOfGround(at("laser", "2, 3, 2.8")).empty()) << "at its underside";
     EXPECT_GT(areaOfGround(at("laser", "2, 3, 2.8")), 1);
     EXPECT_TRUE(findingsOfGround(at("laser", "4, 3, 3")).empty()) << "in the shaft";

@@ -19,6 +19,7 @@ constexpr const char* kRoom =
     "desk id=desk at=-2,1 size=1.6,0.8,0.75 heading=30\ncube id=low at=2,-1 size=1.2,0.5,0.4\n"
     "cube id=tall at=-1.5,-2 size=0.6,0.6,2.6\ntable id=table at=3,2\n"
     "cylinder id=drum at=2.5,-2.8 size=0.7,0.7,1\n";
+const std::string kSpherical = "ranger projection=spherical ";
 
 struct Measured {
     Scene scene;
@@ -64,14 +65,15 @@ void expectSameGains(const std::string& layout) {
 }
 
 TEST(MoveTrials, GainAsWholeMeasures) {
-    const std::string around = "radar fov=360,180 range=50 at=";
+    const std::string around = kSpherical + "fov=360,180 range=50 at=";
+    const std::string ahead = kSpherical + "fov=120,60 range=9 at=";
     expectSameGains(around + "-4,-3,2\n" + around + "4,3,2.7\n" + around + "-3,3,0.2\n" + around +
                     "2,-1,0.2\n");
     expectSameGains("camera at=-4.9,-3.9,2.5 heading=40 tilt=-30 pixels=640,480\n");
     expectSameGains("laser at=-4,-3 fov=270 range=7\nlaser at=3,3,0.5 tilt=-10 range=6\n");
-    expectSameGains(
-        "ranger at=-4,0,1 tilt=-20 fov=40 range=6\nradar at=4.8,3.8,2.4 heading=-140\n");
-    expectSameGains("radar at=-4,0,0\nradar at=0.1,3,1.2 heading=-60\n" + around + "1,-3,0\n");
+    expectSameGains("ranger at=-4,0,1 tilt=-20 fov=40 range=6\n" + ahead +
+                    "4.8,3.8,2.4 heading=-140\n");
+    expectSameGains(ahead + "-4,0,0\n" + ahead + "0.1,3,1.2 heading=-60\n" + around + "1,-3,0\n");
 }
 
 TEST(MoveTrials, CountFloorThatEnoughReceiversHear) {
@@ -84,7 +86,7 @@ TEST(MoveTrials, CountFloorThatEnoughReceiversHear) {
 
 TEST(MoveTrials, OfSensorsFarAwayAreNone) {
     SuggestOptions options;
-    const Document placed = layoutFrom("radar at=-4,-3,2 fov=360,180 range=3\n");
+    const Document placed = layoutFrom(kSpherical + "at=-4,-3,2 fov=360,180 range=3\n");
     const Measured now = measure(roomScene(kRoom, &placed), options.measure);
     MoveTrials trials(now.scene, now.coverage, options);
     EXPECT_GT(trials.error(), 0) << "figures are exact";
@@ -97,7 +99,7 @@ TEST(MoveTrials, OfSensorsFarAwayAreNone) {
 }
 
 TEST(MoveTrials, AreNotKnownForRequirements) {
-    const Document placed = layoutFrom("radar at=-4,-3,2 fov=360,180\n");
+    const Document placed = layoutFrom(kSpherical + "at=-4,-3,2 fov=360,180 range=9\n");
     SuggestOptions options;
     const Measured now = measure(roomScene(kRoom, &placed), options.measure);
     EXPECT_TRUE(MoveTrials::areKnown(now.scene, now.coverage, options));

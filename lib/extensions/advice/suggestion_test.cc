@@ -219,8 +219,9 @@ TEST(Suggestions, AddALaserToARoomWithOverAMillionCandidatesAtTheUsualStep) {
 
 TEST(Suggestions, AddASensorWithAWideViewToAHallInSeconds) {
     // Some 20 000 sites with a view of 40 000 cells each would take minutes.
-    const Advised hall = adviseOn("#env 1\nispace size=40,30\nwall from=0,-15 to=0,13\n",
-                                  "radar id=d at=-10,0,2 fov=360,180 range=30\n");
+    const Advised hall =
+        adviseOn("#env 1\nispace size=40,30\nwall from=0,-15 to=0,13\n",
+                 "ranger id=d at=-10,0,2 fov=360,180 range=30 projection=spherical\n");
     const Suggestion* const added = hall.find(Suggestion::Kind::Add);
     ASSERT_NE(added, nullptr);
     EXPECT_GT(added->share, 0.99) << added->text;  // the half behind the wall

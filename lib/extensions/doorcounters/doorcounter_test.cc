@@ -81,7 +81,7 @@ TEST(DoorCounter, ParametersAreThoseOfItsRecord) {
     EXPECT_EQ(counter.height, 0.9);
     EXPECT_EQ(readingRate(scene.sensors[0].model), 20);
     EXPECT_EQ(maxRange(scene.sensors[0].model), 3);
-    EXPECT_FALSE(scene.sensors[0].is<Radar>());
+    EXPECT_FALSE(scene.sensors[0].is<Laser>());
     EXPECT_EQ(&kindOf(scene.sensors[0].model), &DoorCounter::kKind);
     EXPECT_EQ(scene.sensors[0].model, SensorModel(AddedSensor(counter)));
     DoorCounter changed = counter;

@@ -85,7 +85,8 @@ TEST(EvenDemand, SensorsSeeTheCellsOfCoverage) {
     for (const Sensor& sensor : {placed(scene, "laser,range=4,fov=240", {-2, 0.3, 0.15}, 20),
                                  placed(scene, "laser,range=20,fov=360", {1, -1, 0.15}, 0),
                                  placed(scene, "camera,range=9,fov=90", {3, -2, 2.4}, 130, -40),
-                                 placed(scene, "radar", {-3.5, 2, 2.3}, -30, -30)}) {
+                                 placed(scene, "ranger,range=9,fov=120,60,projection=spherical",
+                                        {-3.5, 2, 2.3}, -30, -30)}) {
         sight.prepare(sensor);
         const CellSet expected = sight.cellsOf(target.grid, sensor);
         const CellSet served = servedIn(scene, sensor, *demand);

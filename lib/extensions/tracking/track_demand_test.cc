@@ -326,11 +326,9 @@ TEST(ArrangeForTracks, CountsSensorsThatStand) {
     EXPECT_NEAR(*other.value, 1, 1e-9);
 }
 
-TEST(ArrangeForTracks, RefusesSensorsOfMotionAndWaysWithoutPeople) {
+TEST(ArrangeForTracks, RefusesWaysWithoutPeople) {
     const Scene scene = roomScene(kTwoRooms);
     ArrangeOptions options = coarse();
-    options.demand = std::make_shared<TrackDemand>(standing({{-3, 0}}), LossRule{});
-    EXPECT_THROW(arranged(scene, groupsOf(scene, {"radar"}), options), UsageError);
     options.demand = std::make_shared<TrackDemand>(PeopleMoments(), LossRule{});
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UnmetError);
 }

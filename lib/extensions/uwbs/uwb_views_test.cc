@@ -32,7 +32,7 @@ TEST(Uwb, SeesTheSameAmongOtherAnchorsAndTags) {
     EXPECT_TRUE(seeAlike(alone, among));
     EXPECT_FALSE(seeAlike(alone, anchor_in("ispace size=8,6\nuwb at=-3,0,2 range=5\n")));
     EXPECT_FALSE(seeAlike(alone, anchor_in("ispace size=8,6\nuwb at=-3,1,2 range=4\n")));
-    EXPECT_FALSE(seeAlike(alone, anchor_in("ispace size=8,6\nradar at=-3,0,2\n")));
+    EXPECT_FALSE(seeAlike(alone, anchor_in("ispace size=8,6\nranger at=-3,0,2\n")));
 }
 
 }  // namespace

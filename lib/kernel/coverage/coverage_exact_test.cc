@@ -20,6 +20,7 @@ namespace ispace {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+const std::string kAllAround = "ranger projection=spherical fov=360,180 ";
 
 /// A room with things in it and some lasers, turned and moved as a whole.
 std::string randomScene(unsigned seed, int lasers, const Pose2& world_from_room) {
@@ -419,7 +420,7 @@ TEST(CoverageExact, CrowdsOfViewsHaveTheFiguresOfCells) {
         for (int k = 0; k < 12; ++k) {
             const std::string at = std::to_string(3 * i - 17) + ',' + std::to_string(2 * k - 11);
             text += (i + k) % 2 == 0 ? "cube at=" + at + " size=0.1\n"
-                                     : "radar fov=360,180 range=50 at=" + at + ",2\n";
+                                     : kAllAround + "range=50 at=" + at + ",2\n";
         }
     const Scene scene = sceneOf(text);
     const auto measured = [&scene](std::optional<std::uint64_t> max_work) {
@@ -450,14 +451,15 @@ Scene changedBy(const Scene& scene, const std::vector<Edit>& edits) {
 }
 
 TEST(MeasureChanged, HasTheFiguresOfAMeasureOfTheWhole) {
-    const Scene before = sceneOf(randomScene(3, 4, {}) +
-                                 "radar id=d1 at=1,1,2\nradar id=d2 at=7,1,2\ncamera id=c "
-                                 "at=2,2,2 tilt=-40\nzone id=z at=2,2 size=1,1\n");
+    const Scene before =
+        sceneOf(randomScene(3, 4, {}) + kAllAround + "id=d1 at=1,1,2\n" + kAllAround +
+                "id=d2 at=7,1,2\ncamera id=c at=2,2,2 tilt=-40\nzone id=z at=2,2 "
+                "size=1,1\n");
     const CoverageOptions options;
     RayScenes worlds(before.environment);
     const Coverage known = measureCoverage(before, worlds, options);
     const std::vector<std::vector<Edit>> changes = {
-        {parseEdit(Edit::Kind::Add, "radar id=d3 at=4,1,2")},
+        {parseEdit(Edit::Kind::Add, kAllAround + "id=d3 at=4,1,2")},
         {parseEdit(Edit::Kind::Rotate, "laser2:30"), parseEdit(Edit::Kind::Delete, "laser1")},
         {parseEdit(Edit::Kind::Set, "c.tilt=-60"), parseEdit(Edit::Kind::Add, "cube at=4,2")}};
     for (const std::vector<Edit>& edits : changes) {
@@ -480,7 +482,7 @@ TEST(MeasureChanged, HasTheFiguresOfAMeasureOfTheWhole) {
 
 TEST(MeasureChanged, TakesTheViewsOfSensorsThatStay) {
     const Scene before =
-        sceneOf("ispace size=8,6\nradar id=d1 at=-3,0,2\nlaser id=l1 at=3,0 range=2\n");
+        sceneOf("ispace size=8,6\n" + kAllAround + "id=d1 at=-3,0,2\nlaser id=l1 at=3,0 range=2\n");
     const CoverageOptions options;
     RayScenes worlds(before.environment);
     Coverage known = measureCoverage(before, worlds, options);
@@ -494,9 +496,9 @@ TEST(MeasureChanged, TakesTheViewsOfSensorsThatStay) {
             if (view.id == id) return view.cells.count();
         return std::size_t{0};
     };
-    EXPECT_EQ(cells_of("radar id=d2 at=0,2,2", Edit::Kind::Add, "d1"), 0U);
-    EXPECT_EQ(cells_of("radar id=d2 at=0,2,2", Edit::Kind::Add, "l1"), 0U);
-    EXPECT_GT(cells_of("radar id=d2 at=0,2,2", Edit::Kind::Add, "d2"), 0U);
+    EXPECT_EQ(cells_of(kAllAround + "id=d2 at=0,2,2", Edit::Kind::Add, "d1"), 0U);
+    EXPECT_EQ(cells_of(kAllAround + "id=d2 at=0,2,2", Edit::Kind::Add, "l1"), 0U);
+    EXPECT_GT(cells_of(kAllAround + "id=d2 at=0,2,2", Edit::Kind::Add, "d2"), 0U);
     EXPECT_GT(cells_of("l1.range=1", Edit::Kind::Set, "l1"), 0U);
     EXPECT_EQ(cells_of("l1.range=1", Edit::Kind::Set, "d1"), 0U);
     EXPECT_GT(cells_of("cube at=0,0", Edit::Kind::Add, "l1"), 0U) << "another room";

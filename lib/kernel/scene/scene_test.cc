@@ -363,7 +363,7 @@ TEST(SceneSchemas, WhatSeesOrHearsIsASensorAndRobotsAreNot) {
     std::vector<std::string> sensors;
     for (const SensorKind* kind : sensorKinds())
         if (kind->perceives) sensors.emplace_back(kind->keyword);
-    for (const char* const seer : {"laser", "ranger", "ultrasound", "camera", "radar"})
+    for (const char* const seer : {"laser", "ranger", "ultrasound", "camera"})
         EXPECT_NE(std::find(sensors.begin(), sensors.end(), seer), sensors.end()) << seer;
     for (const char* const other : {"tag", "mat", "gate"})
         EXPECT_EQ(std::find(sensors.begin(), sensors.end(), other), sensors.end()) << other;

@@ -48,7 +48,7 @@ FloorInformation atAnyHeight(const SpaceInformation& information);
 
 /// Returns the information of one reading about a point that the sensor sees, by the errors of its
 /// kind (SensorKind::sight_errors):
-/// - lasers, rangers, radars: a distance, by their noise, and the direction;
+/// - lasers, rangers: a distance, by their noise, and the direction;
 /// - cameras: the direction;
 /// - receivers of tags: the distance.
 ///

@@ -21,7 +21,6 @@
 #include "sense/depth.h"
 #include "sense/moment.h"
 #include "sense/photo.h"
-#include "sense/radar_frame.h"
 #include "sense/scan.h"
 #include "sense/selection.h"
 #include "sense/trajectory.h"
@@ -60,11 +59,11 @@ struct GateState {
 
 /// A reading of a sensor of any kind, of a sweep one scan: sorted as the alternatives of
 /// SensorModel.
-using ReadingValue = std::variant<Scan, DepthFrame, Hearings, Burst, Photo, RadarFrame,
-                                  AddedReading, MatState, GateState>;
+using ReadingValue =
+    std::variant<Scan, DepthFrame, Hearings, Burst, Photo, AddedReading, MatState, GateState>;
 
 /// The scans of a sweep (or a single one), or the reading of another sensor.
-using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, RadarFrame, AddedReading>;
+using Reading = std::variant<std::vector<Scan>, DepthFrame, Burst, Photo, AddedReading>;
 
 /// Returns the first scan of a sweep, or the value of another reading.
 ReadingValue valueOf(Reading reading);

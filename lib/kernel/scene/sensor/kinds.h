@@ -13,7 +13,6 @@
 #include "scene/sensor/camera.h"
 #include "scene/sensor/floor_sensor.h"
 #include "scene/sensor/laser.h"
-#include "scene/sensor/radar.h"
 #include "scene/sensor/ranger.h"
 #include "scene/sensor/ultrasound.h"
 
@@ -22,8 +21,7 @@ namespace ispace {
 /// Parameters of a sensor of any kind; those on the floor are last. Reports and manuals list kinds
 /// in this order, and behind them those that extensions add, in the order in which they are added.
 /// Only this header, the sources of the kinds and the computation of readings distinguish kinds.
-using SensorModel =
-    std::variant<Laser, Ranger, Receiver, Tag, Camera, Radar, AddedSensor, Mat, Gate>;
+using SensorModel = std::variant<Laser, Ranger, Receiver, Tag, Camera, AddedSensor, Mat, Gate>;
 
 /// True for parameters in the list, false for those of a kind that an extension adds.
 template <typename Model, typename Models = SensorModel>

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/sensor/radar.h"
+#include "extensions/radars/radar.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/number.h"
+#include "extensions/radars/radar_frame.h"
 #include "scene/sensor/kind_functions.h"
 #include "scene/sensor/sensor.h"
+#include "scene/sensor/sensor_keys.h"
 
-namespace ispace {
+namespace ispace::radars {
 
 Radar withParameters(Radar base, const Record& record) {
     Diagnostics findings;
@@ -85,7 +87,7 @@ void addRadarKeys(std::vector<KeySpec>& keys) {
 }
 
 /// Builds a board with the antennas' cover in front.
-std::vector<Mesh> body() {
+std::vector<Mesh> radarBody() {
     Mesh board{Material::Sensor, {}, {}}, cover{Material::Metal, {}, {}};
     addBox(board, {-0.02, -0.03, -0.035}, {-0.005, 0.03, 0.035});
     addBox(cover, {-0.005, -0.012, -0.012}, {0, 0.012, 0.012});
@@ -104,10 +106,10 @@ const SensorKind Radar::kKind = {
     .device_help = "a millimetre-wave radar one can buy",
     .sign = SensorSign::Square,
     .add_keys = addRadarKeys,
-    .body = body,
+    .body = radarBody,
     .read = readModel<Radar>,
     .summary = [](const SensorModel& model) -> DeviceSummary {
-        const Radar& radar = std::get<Radar>(model);
+        const Radar& radar = *tryModel<Radar>(model);
         return {rangeText(radar.min_range, radar.max_range),
                 degreesText(radar.fov_x) + "x" + degreesText(radar.fov_y),
                 std::to_string(radar.detections), formatDouble(radar.rate)};
@@ -120,10 +122,14 @@ const SensorKind Radar::kKind = {
     .is_arranged = true,
     .follows_poses = true,
     .sight_errors = [](const SensorModel& model, double range) -> SightErrors {
-        const RangeNoise& noise = std::get<Radar>(model).noise;
+        const RangeNoise& noise = tryModel<Radar>(model)->noise;
         return {distanceSigma(noise, range), std::max(directionSigma(noise, 0), kMinSigma)};
     },
     .senses = [](const SensorModel& model, Vec2 velocity,
-                 Vec3 direction) { return senses(std::get<Radar>(model), velocity, direction); }};
+                 Vec3 direction) { return senses(*tryModel<Radar>(model), velocity, direction); },
+    .measure = measureBy<Radar>,
+    .reading = &RadarFrame::kKind};
 
-}  // namespace ispace
+void addRadars() { addSensorKind(Radar::kKind); }
+
+}  // namespace ispace::radars

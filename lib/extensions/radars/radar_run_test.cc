@@ -6,10 +6,12 @@
 #include <cmath>
 #include <string>
 
+#include "extensions/radars/radar_frame.h"
+#include "extensions/radars/radars_test.h"
 #include "sim/world.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::radars {
 namespace {
 
 using std::chrono::milliseconds;
@@ -18,9 +20,10 @@ using std::chrono::milliseconds;
 constexpr const char* kRobot = "robot id=r1 at=-2,0 radius=0.3 accel=1\n";
 constexpr const char* kRadar = "radar id=w1 at=3,0,0.11 heading=180 min_speed=0.05\n";
 
-const RadarFrame& frame(const World& world, std::size_t sensor = 0) {
-    return std::get<RadarFrame>(world.reading(sensor).value);
+const AddedReading& reading(const World& world) {
+    return std::get<AddedReading>(world.reading(0).value);
 }
+const RadarFrame& frame(const World& world) { return reading(world).as<RadarFrame>(); }
 
 TEST(RadarRun, MeasuresTheSpeedsOfRobots) {
     const Scene room = testing::scene("ispace size=10,6\n", std::string(kRobot) + kRadar);
@@ -32,8 +35,8 @@ TEST(RadarRun, MeasuresTheSpeedsOfRobots) {
         world.step();
         if (world.latestReadings().empty()) continue;
         const RadarFrame& now = frame(world);
-        EXPECT_EQ(now.frame, i / 5 + 1);
-        EXPECT_NEAR(now.time, ispace::seconds(world.time()), 1e-12);
+        EXPECT_EQ(reading(world).frame, i / 5 + 1);
+        EXPECT_NEAR(reading(world).time, ispace::seconds(world.time()), 1e-12);
         const RobotStatus status = world.status(0);
         if (status.speed < 0.05) continue;
         ASSERT_EQ(now.detections.size(), 1U) << i;
@@ -76,4 +79,4 @@ TEST(RadarRun, ARadarOnARobotCompensatesItsMotion) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::radars

@@ -2,9 +2,10 @@
 // Readings of radars.
 #include <cmath>
 
+#include "extensions/radars/radar_frame.h"
 #include "sense/formats/field_values.h"
 
-namespace ispace {
+namespace ispace::radars {
 
 namespace {
 
@@ -21,11 +22,11 @@ Vec3 placeOf(const Detection& one) {
     return one.range * Vec3{cb * ce, sb * ce, se};
 }
 
-PointCloud cloudOf(const RadarFrame& frame, Coordinates in) {
+PointCloud cloudOf(const RadarFrame& frame, const Pose3& pose, Coordinates in) {
     PointCloud cloud;
     cloud.width = frame.detections.size();
-    if (in == Coordinates::Sensor) cloud.viewpoint = frame.pose;
-    const Frame3 axes(frame.pose);
+    if (in == Coordinates::Sensor) cloud.viewpoint = pose;
+    const Frame3 axes(pose);
     for (const Detection& one : frame.detections) {
         const Vec3 local = placeOf(one);
         const Point3 at = in == Coordinates::Sensor ? Point3{} + local : axes.origin + axes * local;
@@ -131,7 +132,7 @@ constexpr RosTopic kRadarTopics[] = {
      [](const RosHeader& header, const View& r) {
          const FieldValue speeds = floatsOf<speedOf>(r);
          const PointField velocity{"velocity", std::get<std::vector<float>>(speeds)};
-         return pointCloudMessage(header, cloudOf(r.as<RadarFrame>(), Coordinates::Sensor),
+         return pointCloudMessage(header, cloudOf(r.as<RadarFrame>(), r.pose, Coordinates::Sensor),
                                   std::span(&velocity, 1));
      }},
     {RosType::RadarScan, "returns", RosFrame::Sensor, returnsMessage}};
@@ -149,7 +150,10 @@ const ReadingKind RadarFrame::kKind = {
             return std::vector{static_cast<std::size_t>(sensor.as<Radar>().detections)};
         },
     .varies = true,
-    .points = [](const Sensor& /*sensor*/, const Reading& reading,
-                 Coordinates in) { return cloudOf(std::get<RadarFrame>(reading), in); }};
+    .points =
+        [](const Sensor& /*sensor*/, const Reading& reading, Coordinates in) {
+            const auto& frame = std::get<AddedReading>(reading);
+            return cloudOf(frame.as<RadarFrame>(), frame.pose, in);
+        }};
 
-}  // namespace ispace
+}  // namespace ispace::radars

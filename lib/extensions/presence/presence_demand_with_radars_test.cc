@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "extensions/presence/presence.h"
+#include "extensions/radars/radars_test.h"
 #include "support/test_arrange.h"
 
 namespace ispace::presence {

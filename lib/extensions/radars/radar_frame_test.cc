@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/radar_frame.h"
+#include "extensions/radars/radar_frame.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "extensions/radars/radars_test.h"
 #include "support/test_readings.h"
 
-namespace ispace {
+namespace ispace::radars {
 namespace {
 
 constexpr double kHeight = 0.22, kMiddle = kHeight / 2;
@@ -18,11 +19,10 @@ constexpr double kHeight = 0.22, kMiddle = kHeight / 2;
 class RadarTest : public ::testing::Test {
   protected:
     Scene room = testing::scene("ispace size=40,40\n");
-    Sensor sensor{"w1", Radar(), {{0, 0, kMiddle}, {}, {}, {}}};
+    Radar radar;
+    Sensor sensor{"w1", modelOf(Radar()), {{0, 0, kMiddle}, {}, {}, {}}};
     std::vector<MovingBody> bodies;
     MoverVelocities velocities;
-
-    Radar& radar() { return sensor.as<Radar>(); }
 
     void addRobot(Point2 at, Vec2 velocity, double turn = 0, double radius = 0.3) {
         RobotModel model;
@@ -33,6 +33,7 @@ class RadarTest : public ::testing::Test {
     }
 
     std::vector<Detection> detect(std::optional<std::uint64_t> seed = {}, int frame = 0) {
+        sensor.model = modelOf(radar);
         if (!worlds) worlds.emplace(room.environment).prepareMesh(Surfaces::Solid);
         return castRadar(worlds->mesh(Surfaces::Solid), MovingBodies(bodies), velocities, sensor,
                          sensor.pose, frame, seed)
@@ -43,7 +44,7 @@ class RadarTest : public ::testing::Test {
 };
 
 TEST_F(RadarTest, MeasuresRangeBearingAndRadialSpeed) {
-    radar().max_range = 20;
+    radar.max_range = 20;
     const struct {
         Point2 at;
         Vec2 velocity;
@@ -83,7 +84,7 @@ TEST_F(RadarTest, TheFieldOfViewAndTheRangesIncludeTheirEnds) {
         addRobot(Point2{} + distance * along, along);
         return detect().size();
     };
-    radar().min_range = 0.7;
+    radar.min_range = 0.7;
     EXPECT_EQ(count_at(60, 5), 1U);
     EXPECT_EQ(count_at(-60, 5), 1U);
     EXPECT_EQ(count_at(60.1, 5), 0U);
@@ -103,7 +104,7 @@ TEST_F(RadarTest, ReportsNeitherTheRoomNorMoversThatStandOrCrossItsView) {
     addRobot({3, 0.5}, {-0.5, 3});  // tangential
     addRobot({5, -0.9}, {0.099, 0}, 0, 0.1);
     EXPECT_TRUE(detect().empty());
-    radar().min_speed = 0.05;
+    radar.min_speed = 0.05;
     EXPECT_EQ(detect().size(), 1U);
 }
 
@@ -163,21 +164,21 @@ TEST_F(RadarTest, MoversItCannotTellApartAreOneDetection) {
     addRobot({5, 0.4}, {-1, 0});
     addRobot({5.1, -0.4}, {-1.05, 0});
     EXPECT_EQ(detect().size(), 2U);
-    radar().noise.resolution = 0.2;
-    radar().angle_resolution = Angle::degrees(15);
-    radar().speed_resolution = 0.1;
+    radar.noise.resolution = 0.2;
+    radar.angle_resolution = Angle::degrees(15);
+    radar.speed_resolution = 0.1;
     ASSERT_EQ(detect().size(), 1U);
     EXPECT_GT(detect()[0].bearing.degrees(), 0);  // the nearer one
-    radar().angle_resolution = Angle::degrees(8);
+    radar.angle_resolution = Angle::degrees(8);
     EXPECT_EQ(detect().size(), 2U);
-    radar().angle_resolution = Angle::degrees(15);
+    radar.angle_resolution = Angle::degrees(15);
     velocities.robots[1].linear = {-1.2, 0};
     EXPECT_EQ(detect().size(), 2U);
 }
 
 TEST_F(RadarTest, KeepsTheNearestOfTooMany) {
     for (const double x : {6.0, 2.0, 8.0, 4.0}) addRobot({x, x - 5}, {1, 0});
-    radar().detections = 3;
+    radar.detections = 3;
     const std::vector<Detection> seen = detect();
     ASSERT_EQ(seen.size(), 3U);
     EXPECT_NEAR(seen[0].range, std::hypot(2, 3) - 0.3, 1e-12);
@@ -187,7 +188,7 @@ TEST_F(RadarTest, KeepsTheNearestOfTooMany) {
 
 TEST_F(RadarTest, SpeedsAreKnownModuloTwiceTheMaximum) {
     addRobot({5, 0}, {2.5, 0});
-    radar().max_speed = 2;
+    radar.max_speed = 2;
     EXPECT_NEAR(detect()[0].speed, -1.5, 1e-12);
     velocities.robots[0].linear = {-1.5, 0};
     EXPECT_NEAR(detect()[0].speed, -1.5, 1e-12);
@@ -197,11 +198,11 @@ TEST_F(RadarTest, SpeedsAreKnownModuloTwiceTheMaximum) {
 
 TEST_F(RadarTest, NoiseHasTheGivenSpreads) {
     addRobot({5, 0}, {1, 0});
-    radar().noise.bias = 0.1;
-    radar().noise.sigma = {0.02, 0, 0};
-    radar().noise.angle_sigma = Angle::degrees(1.5);
-    radar().noise.dropout = 0.25;
-    radar().speed_sigma = 0.05;
+    radar.noise.bias = 0.1;
+    radar.noise.sigma = {0.02, 0, 0};
+    radar.noise.angle_sigma = Angle::degrees(1.5);
+    radar.noise.dropout = 0.25;
+    radar.speed_sigma = 0.05;
     constexpr int kFrames = 4000;
     int count = 0;
     double range = 0, range2 = 0, bearing2 = 0, elevation2 = 0, speed2 = 0;
@@ -224,9 +225,9 @@ TEST_F(RadarTest, NoiseHasTheGivenSpreads) {
 
 TEST_F(RadarTest, NoiseOfAMoverDoesNotDependOnOthers) {
     addRobot({5, 1}, {1, 0});
-    radar().noise.sigma = {0.02, 0, 0};
-    radar().speed_sigma = 0.05;
-    radar().speed_resolution = 0.125;
+    radar.noise.sigma = {0.02, 0, 0};
+    radar.speed_sigma = 0.05;
+    radar.speed_resolution = 0.125;
     const Detection alone = detect(3).at(0);
     EXPECT_EQ(std::fmod(alone.speed, 0.125), 0);
     addRobot({3, -1}, {1, 0});
@@ -237,21 +238,5 @@ TEST_F(RadarTest, NoiseOfAMoverDoesNotDependOnOthers) {
     EXPECT_NE(detect(4)[1].range, alone.range);
 }
 
-TEST(StartVelocities, FollowPathsAndWanderersAtTheirSpeeds) {
-    const Scene scene = testing::scene(
-        "ispace size=20,20\n"
-        "human id=h1 at=1,1 path=1,1;1,4 speed=1.5\n"
-        "human id=h2 at=3,3 heading=180 walk=wander\n"
-        "human id=h3 at=5,5\n"
-        "robot id=r1 at=-2,0 path=-5,-4\n");
-    const MoverVelocities all = startVelocities(scene);
-    EXPECT_EQ(all.of(kFirstPerson).at({1, 1}), (Vec2{0, 1.5}));
-    EXPECT_NEAR(all.of(kFirstPerson + 1).linear.x, -1.2, 1e-12);
-    EXPECT_EQ(all.of(kFirstPerson + 2).linear, Vec2());
-    EXPECT_NEAR(all.of(0).linear.x, -0.3, 1e-12);
-    EXPECT_NEAR(all.of(0).linear.y, -0.4, 1e-12);
-    EXPECT_EQ(all.of(MovingBodies::kNoOwner).linear, Vec2());
-}
-
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::radars

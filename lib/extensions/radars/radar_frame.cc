@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sense/radar_frame.h"
+#include "extensions/radars/radar_frame.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include "sense/noise.h"
 #include "sense/sighting.h"
 
-namespace ispace {
+namespace ispace::radars {
 
 namespace {
 
@@ -110,7 +110,8 @@ RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
     std::vector<Echo> echoes = echoesOf(mesh, bodies, velocities, sensor, pose);
     resolve(radar, echoes);
     if (noise_seed && radar.isNoisy()) disturb(radar, sensor.id, frame, *noise_seed, echoes);
-    RadarFrame out{.frame = frame, .pose = pose, .detections = {}};
+    RadarFrame out;
+    out.detections.reserve(echoes.size());
     for (Echo& echo : echoes) {
         echo.detection.speed = folded(echo.detection.speed, radar.max_speed);
         out.detections.push_back(echo.detection);
@@ -119,10 +120,8 @@ RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
 }
 
 RadarFrame readingOf(const Radar& /*radar*/, const Moment& now) {
-    RadarFrame seen = castRadar(now.mesh(), now.bodies, now.options.velocities, now.sensor,
-                                now.pose, now.frame, now.options.noise_seed);
-    seen.time = now.time;
-    return seen;
+    return castRadar(now.mesh(), now.bodies, now.options.velocities, now.sensor, now.pose,
+                     now.frame, now.options.noise_seed);
 }
 
-}  // namespace ispace
+}  // namespace ispace::radars

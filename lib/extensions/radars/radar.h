@@ -1,4 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// lib/extensions/radars: millimetre-wave radars, which detect robots and people that move. Uses
+// sense and below.
+//
+// A reading is a function of pose, time, frame and seed alone, thread-safe; it costs a few rays for
+// each mover in the field of view.
+//
+//     addRadars();                                        // before the first scene is read
+//     const Sensor sensor = sensorsOf<Radar>(scene).front();
+//     const double least = sensor.as<Radar>().min_speed;  // m/s, along the line of sight
 #pragma once
 
 #include <cstddef>
@@ -12,6 +21,10 @@
 namespace ispace {
 
 struct SensorKind;
+
+}  // namespace ispace
+
+namespace ispace::radars {
 
 /// A millimetre-wave radar that reports movers: frequency-modulated, with antennas in both
 /// directions, such as the modules at 60 GHz. Its own filter removes the echoes of the room.
@@ -55,4 +68,7 @@ bool senses(const Radar& radar, Vec2 velocity, Vec3 direction);
 /// Returns the field of view at a pose, without occlusion: intervals of bearings and elevations.
 FieldOfView fieldOfView(const Radar& radar, const Pose3& pose);
 
-}  // namespace ispace
+/// Adds the kind, for the program.
+void addRadars();
+
+}  // namespace ispace::radars

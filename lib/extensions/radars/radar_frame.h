@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Readings of radars: the movers in sight, by range, direction and radial speed.
+//
+//     for (const Detection& one : readingOf(sensor.as<Radar>(), moment).detections)
+//         if (one.speed < 0) warn(one.range);  // it comes nearer
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "sense/moment.h"
+#include "extensions/radars/radar.h"
+#include "sense/added_reading.h"
 
 namespace ispace {
 
 struct ReadingKind;
+
+}  // namespace ispace
+
+namespace ispace::radars {
 
 /// A mover as a radar reports it, in the radar's frame.
 struct Detection {
@@ -20,9 +29,6 @@ struct Detection {
 
 /// One reading of a radar.
 struct RadarFrame {
-    double time = 0;  ///< seconds
-    int frame = 0;
-    Pose3 pose;
     std::vector<Detection> detections;  ///< the nearest first
     static const ReadingKind kKind;
 };
@@ -43,4 +49,4 @@ RadarFrame castRadar(const RayWorld& mesh, const MovingBodies& bodies,
 
 RadarFrame readingOf(const Radar& radar, const Moment& now);
 
-}  // namespace ispace
+}  // namespace ispace::radars

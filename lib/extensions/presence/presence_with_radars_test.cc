@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "extensions/radars/radars_test.h"
 #include "support/test_scenes.h"
 
 namespace ispace::presence {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/sensor/radar.h"
-#include "scene/sensor/sensor_keys.h"
+#include "extensions/radars/radar.h"
 
 #include <gtest/gtest.h>
 
+#include "extensions/radars/radars_test.h"
+#include "scene/sensor/sensor_keys.h"
+#include "sense/formats/reading_fields.h"
 #include "support/test_sensors.h"
 
-namespace ispace {
+namespace ispace::radars {
 namespace {
 
 using testing::findings;
@@ -49,7 +51,8 @@ TEST(Radar, RejectsContradictions) {
 }
 
 TEST(Radar, SeesAWindowOfBearingsAndElevations) {
-    Sensor sensor{"w", radar("range=9 fov=120,60"), {{1, 2, 1}, Angle::degrees(90), {}, {}}};
+    const Sensor sensor{
+        "w", modelOf(radar("range=9 fov=120,60")), {{1, 2, 1}, Angle::degrees(90), {}, {}}};
     const FieldOfView view = fieldOfView(sensor).value();
     const auto at = [&](double bearing, double elevation, double range) {
         return Point3{1, 2, 1} +
@@ -62,6 +65,15 @@ TEST(Radar, SeesAWindowOfBearingsAndElevations) {
     EXPECT_FALSE(view.holds(at(0, 0, 9.01)));
 }
 
+TEST(Radar, ReadingsHaveTopicsOfPointsAndOfReturns) {
+    const auto topics = readingKind(modelOf(Radar())).topics;
+    ASSERT_EQ(topics.size(), 2U);
+    EXPECT_EQ(topics[0].name, "points");
+    EXPECT_EQ(topics[0].type, RosType::PointCloud2);
+    EXPECT_EQ(topics[1].name, "returns");
+    EXPECT_EQ(topics[1].type, RosType::RadarScan);
+}
+
 TEST(Radar, DevicesAreModulesAtSixtyGigahertz) {
     const Radar device = radar("model=iwr6843isk");
     EXPECT_EQ(device.model, "iwr6843isk");
@@ -71,4 +83,4 @@ TEST(Radar, DevicesAreModulesAtSixtyGigahertz) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::radars

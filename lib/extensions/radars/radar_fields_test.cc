@@ -6,10 +6,12 @@
 #include <string>
 
 #include "base/error.h"
+#include "extensions/radars/radar_frame.h"
+#include "extensions/radars/radars_test.h"
 #include "sense/formats/reading_format.h"
 #include "support/test_readings.h"
 
-namespace ispace {
+namespace ispace::radars {
 namespace {
 
 class RadarFormats : public ::testing::Test {
@@ -18,10 +20,10 @@ class RadarFormats : public ::testing::Test {
         Radar radar;
         radar.detections = 3;
         radar.max_range = 8;
-        sensors.read.push_back({"w1", radar, {{1, 2, 0.5}, Angle::degrees(90), {}, {}}});
-        RadarFrame frame{0.5, 5, sensors.read[0].pose, {}};
+        sensors.read.push_back({"w1", modelOf(radar), {{1, 2, 0.5}, Angle::degrees(90), {}, {}}});
+        RadarFrame frame;
         frame.detections = {{2, {}, {}, -0.25}, {4, Angle::degrees(-90), {}, 1.5}};
-        reading = frame;
+        reading = AddedReading{0.5, 5, sensors.read[0].pose, &Radar::kKind, frame};
     }
     [[nodiscard]] std::string written(const std::string& format, FormatOptions options = {}) const {
         const auto writer = makeFormat(format, sensors, std::move(options));
@@ -89,4 +91,4 @@ TEST_F(RadarFormats, FormatsOfEqualReadingsRefuseIt) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::radars
