@@ -30,6 +30,7 @@ const Extensions& extensions() {
         ISPACE_MOTES
         ISPACE_THERMOMETERS
         ISPACE_DOORCOUNTERS
+        ISPACE_RUNS
         ISPACE_DAYS
         ISPACE_GOALS
         ISPACE_EVENNESS

@@ -125,7 +125,7 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
     std::vector<const char*> single = {"--report",  "--material", "--prices", "--title",
                                        "--project", "--client",   "--author", "--logo",
-                                       "--paper",   "--compare",  "--run"};
+                                       "--paper",   "--compare"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
     for (const std::string& option : o.groups->options()) single.push_back(option.c_str());
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
@@ -187,10 +187,6 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     line.file("--compare", "LAYOUT", o.other,
               "report gains and losses against this layout, in numbers and on the map",
               Enters::BaseName);
-    line.file("--run", "DIR", o.run,
-              "report by how many sensors robots and people were seen in the run that simrun "
-              "--record wrote there, and where sight was lost, in numbers and on the map",
-              Enters::BaseName);
     o.groups->declare(line);
     line.group("The map");
     line.choice("--to", words.to, formatNames(), "format of FILE (default: its suffix, else png)",
@@ -220,8 +216,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
     addStoreyOption(line, o.rules, "default: all storeys");
     addCommonOptions(line, o.common, "draw the map there (default: no map)");
     line.essential({"--version", "--json", "--report", "--cell", "--height", "--plane", "--density",
-                    "--zone", "--require", "--compare", "--run", "--to", "--width", "--color",
-                    "--storey", "--output", "--quiet", "--threads", "--seed"});
+                    "--zone", "--require", "--compare", "--to", "--width", "--color", "--storey",
+                    "--output", "--quiet", "--threads", "--seed"});
     line.parse(argc, argv);
 
     o.task = tool_extensions.task(line, {o.common, o.rules, o.operands});

@@ -31,7 +31,6 @@ struct CoverageToolOptions {
     std::string report;  ///< file for the report as JSON besides stdout; "": no file
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
-    std::string run;    ///< folder of a record of robots and people; "" without
     MapOptions map;
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;

@@ -30,7 +30,6 @@
 #include "report/map/map.h"
 #include "report/trace_file.h"
 #include "scene/findings/findings.h"
-#include "scene/run/run_reader.h"
 #include "scene/sensor/ultrasound.h"
 #include "site/coupling.h"
 
@@ -47,23 +46,13 @@ const Storey& storeyOf(const SiteInput& input, std::size_t room) {
 
 }  // namespace
 
-SiteParts SiteResults::parts(const SiteScene& building) const {
+SiteParts SiteResults::parts() const {
     SiteParts parts;
     parts.storeys.resize(coverage.storeys.size());
-    if (run) addRun(parts, building, *run);
     for (std::size_t i = 0; i < found.parts.storeys.size(); ++i)
         join(parts.storeys[i], found.parts.storeys[i]);
     join(parts.sum, found.parts.sum);
     return parts;
-}
-
-std::vector<std::string> operandsOf(const CoverageToolOptions& options) {
-    if (options.run.empty() || !options.operands.empty()) return options.operands;
-    if (const std::string building = recordedBuilding(options.run); !building.empty())
-        return {building};
-    static_cast<void>(RunReader(options.run));  // fails before a missing layout does
-    const std::string scene = sceneOfRecord(options.run);
-    return scene.empty() ? std::vector<std::string>() : std::vector{scene};
 }
 
 void nameInRoom(CoverageToolOptions& options, const SiteInput& input) {
@@ -73,10 +62,6 @@ void nameInRoom(CoverageToolOptions& options, const SiteInput& input) {
 
 void fitOptions(CoverageToolOptions& options, const SiteInput& input) {
     nameInRoom(options, input);
-    const auto check_record = [&input](const char* option, const std::string& folder) {
-        if (!folder.empty()) mustBeRecordOf(input, option, folder);
-    };
-    check_record("--run", options.run);
     options.groups->fit(input);
     if (options.format == nullptr) return;
     if (input.isOneRoom()) {
@@ -204,21 +189,6 @@ std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteI
     return tried;
 }
 
-void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
-                   std::vector<std::string>& files, SiteResults& results) {
-    if (!options.run.empty()) {
-        const std::string folder = recordFor(input, options.run);
-        for (const Storey& storey : input.building.document.storeys)
-            files.push_back(RecordedFiles(recordOfStorey(folder, storey)).robots);
-        std::vector<std::string> warnings;
-        results.run =
-            measureSiteRun(sceneForRecord(input, folder), folder,
-                           {.plane = options.measure.plane, .density = options.measure.density},
-                           options.rules.max_work, warnings);
-        for (const std::string& warning : warnings) warn(options.common, "coverage", warning);
-    }
-}
-
 namespace {
 
 /// Returns the content of a model: the records of the scene, below the history of both inputs and
@@ -263,7 +233,7 @@ void writeProduct(const CoverageToolOptions& options, const SiteInput& input,
     const std::string& output = options.common.output;
     const CoverageFormat& format = *options.format;
     const Scene& scene = *results.coverage.floors[room];
-    const SiteParts parts = results.parts(input.building);
+    const SiteParts parts = results.parts();
     CoverageProduct product{scene, results.coverage.storeys[room],
                             results.other ? &results.other->storeys[room] : nullptr,
                             mapOf(options, input, results, parts, room)};
@@ -284,7 +254,7 @@ void writeProduct(const CoverageToolOptions& options, const SiteInput& input,
 /// Draws all storeys on one page.
 void writePanels(const CoverageToolOptions& options, const SiteInput& input,
                  const SiteResults& results) {
-    const SiteParts parts = results.parts(input.building);
+    const SiteParts parts = results.parts();
     std::vector<Picture> panels;
     for (std::size_t i = 0; i < results.coverage.storeys.size(); ++i) {
         MapOptions map = mapOf(options, input, results, parts, i);

@@ -13,7 +13,6 @@
 #include "cli/site_operands.h"
 #include "coverage/coverage_options.h"
 #include "site/site_coverage.h"
-#include "site/site_run_coverage.h"
 
 namespace ispace {
 
@@ -21,16 +20,12 @@ namespace ispace {
 struct SiteResults {
     SiteCoverage coverage;
     std::optional<SiteCoverage> other;  ///< of --compare
-    std::optional<SiteRunCoverage> run;
-    std::vector<TriedPose> tried;  ///< of --trace
-    CoverageFindings found;        ///< of extensions
+    std::vector<TriedPose> tried;       ///< of --trace
+    CoverageFindings found;             ///< of extensions
 
     /// Returns the parts of a report that were asked for. They refer to the results.
-    [[nodiscard]] SiteParts parts(const SiteScene& building) const;
+    [[nodiscard]] SiteParts parts() const;
 };
-
-/// Returns the operands, or what a record of --run holds: its scene, or its building.
-std::vector<std::string> operandsOf(const CoverageToolOptions& options);
 
 /// Takes the storey from the zones of requirements of a room that is one: of `ground/entry`
 /// the room has `entry`.
@@ -50,10 +45,6 @@ void measure(const CoverageToolOptions& options, const SiteInput& input,
 /// Reads --trace, from stdin only if no other input is. \throws UsageError for candidates of
 /// another room or building
 std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteInput& input);
-
-/// Measures --run.
-void measureMotion(const CoverageToolOptions& options, const SiteInput& input,
-                   std::vector<std::string>& files, SiteResults& results);
 
 /// Writes -o: a file of a room, a page of all storeys, or a file for each. \pre there is a format
 void writeProducts(const CoverageToolOptions& options, const SiteInput& input,

@@ -29,7 +29,8 @@ namespace {
 using namespace ispace;
 
 SiteInput readInput(const CoverageToolOptions& options) {
-    const std::vector<std::string> operands = operandsOf(options);
+    const std::vector<std::string> operands =
+        options.operands.empty() ? options.groups->recordedSite() : options.operands;
     if (!options.report.empty() || options.groups->isAsked())
         keepFreedMemory();  // of one picture or trial for the next
     else
@@ -66,8 +67,7 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
                        SiteResults& results) {
     const std::string suffix = suffixOf(options.report);
     const SiteCoverage& coverage = results.coverage;
-    if (suffix == "json")
-        return siteCoverageJson(input.building, coverage, results.parts(input.building));
+    if (suffix == "json") return siteCoverageJson(input.building, coverage, results.parts());
     SitePageInput page{input.building, coverage, "", options.history_line};
     if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
     const auto add = [&page](const std::string& phrase, const Verdict& verdict) {
@@ -78,7 +78,7 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
             checkRequirement(requirement, input.building, coverage));
     for (const JudgedShare& one : results.found.judged)
         if (!one.phrase.empty()) add(one.phrase, one.verdict);
-    page.parts = results.parts(input.building);
+    page.parts = results.parts();
     page.findings = sensorFindings(input.building);
     page.media =
         suffix == "pdf" ? CoveragePageInput::Media::Paper : CoveragePageInput::Media::Screen;
@@ -103,7 +103,6 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     results.tried = readTried(options, input);
     if (!options.trace.empty()) files.push_back(options.trace);
     measure(options, input, files, results);
-    measureMotion(options, input, files, results);
     const MeasuredSite site{input,          results.coverage, options.measure, options.requirements,
                             options.common, options.rules};
     options.groups->measure(site, results.found, false);
@@ -118,7 +117,7 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
     if (const std::string text = writeMaterialOf(options.page, input.rooms()); !text.empty())
         warn(options.common, "coverage", text);
-    const SiteParts parts = results.parts(input.building);
+    const SiteParts parts = results.parts();
     writeAll("-", options.json ? siteCoverageJson(input.building, results.coverage, parts)
                                : siteCoverageText(input.building, results.coverage, parts));
     if (results.found.signal != 0) endBySignal(results.found.signal);

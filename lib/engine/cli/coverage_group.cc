@@ -64,6 +64,13 @@ bool CoverageExtensions::takesRequirement(const std::string& text) const {
     });
 }
 
+std::vector<std::string> CoverageExtensions::recordedSite() const {
+    for (const Member& member : members_)
+        if (std::vector<std::string> operands = member.group->recordedSite(); !operands.empty())
+            return operands;
+    return {};
+}
+
 void CoverageExtensions::fit(const SiteInput& input) const {
     for (const Member& member : members_)
         if (member.group->isAsked()) member.group->fit(input);

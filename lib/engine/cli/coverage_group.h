@@ -70,6 +70,9 @@ class CoverageGroup {
     /// Returns true if it judges what a `--require` says, and keeps that. It is called before
     /// take(). \throws UsageError
     [[nodiscard]] virtual bool takesRequirement(const std::string& /*text*/) { return false; }
+    /// Returns the operands of the site of a record, for a command line without operands; empty if
+    /// it has none. It is called after take(). \throws FormatError
+    [[nodiscard]] virtual std::vector<std::string> recordedSite() const { return {}; }
     /// Checks that records belong to the site, before it is measured. \pre isAsked()
     /// \throws UsageError
     virtual void fit(const SiteInput& /*input*/) const {}
@@ -103,6 +106,8 @@ class CoverageExtensions {
     [[nodiscard]] std::string requirements() const;
     /// \throws UsageError for a requirement that this build lacks, with its extension
     [[nodiscard]] bool takesRequirement(const std::string& text) const;
+    /// Returns the first operands that a group has.
+    [[nodiscard]] std::vector<std::string> recordedSite() const;
     void fit(const SiteInput& input) const;
     /// Those that search, or the others.
     void measure(const MeasuredSite& site, CoverageFindings& findings, bool searches) const;

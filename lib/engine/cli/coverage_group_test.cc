@@ -53,6 +53,10 @@ class Group : public CoverageGroup {
     [[nodiscard]] bool takesRequirement(const std::string& text) override {
         return !searches_ && text.starts_with("noise:");
     }
+    [[nodiscard]] std::vector<std::string> recordedSite() const override {
+        return is_asked_ && !searches_ ? std::vector<std::string>{"scene.env"}
+                                       : std::vector<std::string>();
+    }
     void measure(const MeasuredSite& /*site*/, CoverageFindings& findings) override {
         findings.files.emplace_back(searches_ ? "search" : "noise");
     }
@@ -76,9 +80,11 @@ TEST(CoverageExtensions, MeasureSearchesApartAndWhatIsAskedAlone) {
     CommandLine line("coverage", "[ENV]", "Tests groups.");
     groups.declare(line);
     EXPECT_EQ(groups.options(), (std::vector<std::string>{"--search", "--noise"}));
+    EXPECT_TRUE(groups.recordedSite().empty());
     const char* const words[] = {"coverage", "--noise", "--search"};
     line.parse(3, words);
     EXPECT_TRUE(groups.isAsked());
+    EXPECT_EQ(groups.recordedSite(), std::vector<std::string>{"scene.env"});
     const SiteInput input;
     const SiteCoverage coverage;
     const CoverageOptions how;

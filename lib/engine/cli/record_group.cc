@@ -33,4 +33,8 @@ void RecordExtensions::conclude(const RecordedRun& run) const {
         if (group->isAsked()) group->conclude(run);
 }
 
+void RecordExtensions::report(const RecordedRun& run, SiteParts& parts) const {
+    for (const auto& group : groups_) group->report(run, parts);
+}
+
 }  // namespace ispace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a folder of lib/extensions makes of the record of a run at its end: options of simrun, and
-// the work that they ask for. The run has ended and its clients are gone, so the work may take
-// long. See cli/extension.h.
+// What a folder of lib/extensions makes of the record of a run at its end: options of simrun, the
+// work that they ask for, and sections of its report. The run has ended and its clients are gone,
+// so the work may take long. See cli/extension.h.
 #pragma once
 
 #include <memory>
@@ -13,6 +13,7 @@
 #include "cli/command_line.h"
 #include "cli/common_options.h"
 #include "cli/site_operands.h"
+#include "site/site_coverage.h"
 
 namespace ispace {
 
@@ -35,6 +36,9 @@ class RecordGroup {
     [[nodiscard]] virtual bool isAsked() const = 0;
     /// Prints or writes what was asked for. \pre isAsked(); the files of the record are complete
     virtual void conclude(const RecordedRun& run) const = 0;
+    /// Adds its sections to `simrun --report`, asked or not; they live as long as the group.
+    /// \pre the files of the record are complete
+    virtual void report(const RecordedRun& /*run*/, SiteParts& /*parts*/) {}
 };
 
 /// A row of Extensions, see cli/extension.h.
@@ -53,6 +57,7 @@ class RecordExtensions {
     void take(const CommandLine& line) const;
     [[nodiscard]] bool isAsked() const;
     void conclude(const RecordedRun& run) const;
+    void report(const RecordedRun& run, SiteParts& parts) const;
 
   private:
     std::span<const RecordRow> rows_;

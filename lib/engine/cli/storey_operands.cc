@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -27,7 +26,6 @@
 #include "scene/placement_schemas.h"
 #include "scene/run/run_reader.h"
 #include "site/chosen_storeys.h"
-#include "site/site_sight.h"
 
 namespace ispace {
 
@@ -116,81 +114,6 @@ bool recordNamesStorey(const std::string& folder, const std::string& storey) {
 
 std::string recordOfStorey(const std::string& folder, const Storey& storey) {
     return storey.id.empty() ? folder : folder + '/' + storey.id;
-}
-
-namespace {
-
-/// Fixed sensors of a storey that a run has changed.
-struct SensorChange {
-    double time = 0;  // seconds: of the step after which it was made
-    std::size_t storey = 0;
-    std::shared_ptr<const Scene> scene;  // after it
-};
-
-/// Returns the changes of sensors that may see other storeys, in order of time.
-std::vector<SensorChange> sensorChanges(const SiteScene& building, const std::string& folder,
-                                        std::optional<std::uint64_t> max_work) {
-    std::vector<SensorChange> found;
-    if (floorOpenings(building).empty()) return found;
-    const auto unknown = [](const std::string&) { return std::optional<Pose2>(); };
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        std::shared_ptr<const Scene> now = sceneWithWholeIds(building, i);
-        RunChanges changes =
-            changesOfRun(recordOfStorey(folder, building.document.storeys[i]), *now, max_work);
-        while (auto step = changes.next(std::numeric_limits<double>::infinity(), *now, unknown)) {
-            auto next = std::make_shared<const Scene>(std::move(step->scene));
-            if (looksOtherwise(*now, *next)) found.push_back({step->change.time, i, next});
-            now = std::move(next);
-        }
-    }
-    std::stable_sort(found.begin(), found.end(),
-                     [](const SensorChange& a, const SensorChange& b) { return a.time < b.time; });
-    return found;
-}
-
-}  // namespace
-
-SiteRunCoverage measureSiteRun(const SiteScene& building, const std::string& folder,
-                               const WatchOptions& watch, std::optional<std::uint64_t> max_work,
-                               std::vector<std::string>& warnings) {
-    SiteRunCoverage run;
-    const std::vector<SensorChange> sensor_changes = sensorChanges(building, folder, max_work);
-    std::optional<RoomsAround> rooms(std::in_place, building, watch.plane);
-    WatchOptions own_watch = watch;
-    std::vector<std::string> ids;
-    for (const Storey& storey : building.document.storeys) ids.push_back(storey.id);
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        if (!sensor_changes.empty()) rooms.emplace(building, watch.plane);
-        const Storey& storey = building.document.storeys[i];
-        if (!building.isRoomAlone())
-            own_watch.outside = [&rooms, i](const Scene& scene) {
-                return rooms->outside(i, scene);
-            };
-        const auto advance = [&, next = sensor_changes.begin()](double time) mutable {
-            bool is_new = false;
-            for (; next != sensor_changes.end() && next->time < time; ++next) {
-                rooms->setSensors(next->storey, *next->scene);
-                is_new |= next->storey != i;
-            }
-            return is_new;
-        };
-        const std::string own = recordOfStorey(folder, storey);
-        RunCoverage& measured = run.storeys.emplace_back();
-        if (building.isRoomAlone() || RunReader(own).next()) {
-            const auto scene = sceneWithWholeIds(building, i);
-            RunReader reader(own);
-            RunChanges changes = changesOfRun(own, *scene, max_work);
-            measured = measureRun(*scene, reader, own_watch, &changes, advance);
-            if (!changes.failure().empty()) warnings.push_back(storey.prefix() + changes.failure());
-            if (reader.isCut())
-                warnings.push_back(storey.prefix() +
-                                   "the record ends in the midst of a step, which is left out");
-        }
-        measured.name = baseName(folder) + (storey.id.empty() ? "" : '/' + storey.id);
-    }
-    run.sum = sumOverStoreys(run.storeys, ids);
-    run.sum.name = baseName(folder);
-    return run;
 }
 
 namespace {

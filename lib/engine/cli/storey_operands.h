@@ -7,7 +7,6 @@
 //             draw(storey, storeyFile("plan-%s.svg", storey.id));  // plan-ground.svg
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,8 +15,6 @@
 
 #include "cli/operands.h"
 #include "record/record.h"
-#include "sense/detection.h"
-#include "site/site_run_coverage.h"
 #include "site/site_scene.h"
 #include "site/storeys.h"
 
@@ -70,12 +67,6 @@ bool recordNamesStorey(const std::string& folder, const std::string& storey);
 
 /// Returns the folder of a storey's record; of a room alone that of the record.
 std::string recordOfStorey(const std::string& folder, const Storey& storey);
-
-/// Measures the record of a building's run, storey by storey and in sum. \param max_work of changes
-/// \param warnings gets what could not be read or repeated \throws as measureRun()
-SiteRunCoverage measureSiteRun(const SiteScene& building, const std::string& folder,
-                               const WatchOptions& watch, std::optional<std::uint64_t> max_work,
-                               std::vector<std::string>& warnings);
 
 /// Adds the zones of --zone to the scenes of their storeys, as records: `ground/rect:1,1,2,2`; to
 /// a room alone those without a storey.

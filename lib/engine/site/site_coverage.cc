@@ -22,7 +22,6 @@
 #include "record/text.h"
 #include "report/coverage_report.h"
 #include "report/map/map.h"
-#include "report/run_report.h"
 #include "site/site_sight.h"
 #include "site/storey_sight.h"
 #include "trace/ray_world.h"

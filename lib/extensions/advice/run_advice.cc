@@ -17,8 +17,8 @@
 #include "cli/progress_bar.h"
 #include "extensions/advice/advice.h"
 #include "extensions/advice/site_suggestions.h"
+#include "extensions/runs/site_run_coverage.h"
 #include "scene/run/run_reader.h"
-#include "site/site_run_coverage.h"
 
 namespace ispace::advice {
 
@@ -36,8 +36,8 @@ struct RunSuggestion {
 std::optional<double> seenShare(const RecordedRun& run, const SiteScene& building) {
     if (building.isRoomAlone() && !RunReader(run.record).next()) return std::nullopt;
     std::vector<std::string> repeated;  // warnings that the run itself gave
-    const SiteRunCoverage seen =
-        measureSiteRun(building, run.record, {}, run.rules.max_work, repeated);
+    const runs::SiteRunCoverage seen =
+        runs::measureSiteRun(building, run.record, {}, run.rules.max_work, repeated);
     if (seen.sum.all.time_shares.empty()) return std::nullopt;
     return 1 - seen.sum.all.time_shares.front();
 }

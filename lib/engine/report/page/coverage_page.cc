@@ -18,7 +18,6 @@
 #include "report/map/sensor_colors.h"
 #include "report/page/indoor_floor.h"
 #include "report/page/installation.h"
-#include "report/run_report.h"
 #include "scene/sensor/density_classes.h"
 #include "scene/sensor/lens_resolution.h"
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/run_report.h"
+#include "extensions/runs/run_report.h"
 
 #include <gtest/gtest.h>
 
 #include "report/coverage_report.h"
-#include "report/page/coverage_page.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::runs {
 namespace {
 
 /// A robot drives for `end` seconds at 1 m/s past a laser that sees 1 m around (0, 0).
@@ -88,4 +87,4 @@ TEST(RunReport, OfAMoment) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::runs

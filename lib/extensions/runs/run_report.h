@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The section of reports about a recorded run.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "coverage/run_coverage.h"
+#include "extensions/runs/run_coverage.h"
 #include "report/report_section.h"
 
-namespace ispace {
+namespace ispace::runs {
 
 /// How robots and people were seen in a recorded run: member `run`, tables of text, and their ways
 /// on the map. Of a storey without robots and people it has the member alone.
@@ -29,4 +30,4 @@ class RunSection final : public ReportSection {
     std::unique_ptr<const MapLayer> layer_;
 };
 
-}  // namespace ispace
+}  // namespace ispace::runs

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/run_coverage.h"
+#include "extensions/runs/run_coverage.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "support/test_scenes.h"
 
-namespace ispace {
+namespace ispace::runs {
 namespace {
 
 /// r1 goes from x = -3 to x = 3 along y = 0 in 6 s, past two lasers that see 1 m around (-1, 0) and
@@ -108,4 +108,4 @@ TEST(RunCoverage, WhoJoinsLaterIsLookedAt) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::runs

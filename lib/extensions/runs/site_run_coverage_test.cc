@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "site/site_run_coverage.h"
+#include "extensions/runs/site_run_coverage.h"
 
 #include <gtest/gtest.h>
 
-namespace ispace {
+namespace ispace::runs {
 namespace {
 
 RunCoverageMetrics metrics(double duration, double length, std::vector<double> shares,
@@ -66,4 +66,4 @@ TEST(SiteRunCoverage, OfNobodyIsEmpty) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::runs

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reports the coverage of a run: text, JSON, and ways coloured on a map by the number of sensors.
-#include "report/run_report.h"
+#include "extensions/runs/run_report.h"
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 #include "report/map/map_layer.h"
 #include "report/map/map_parts.h"
 
-namespace ispace {
+namespace ispace::runs {
 
 namespace {
 
@@ -349,4 +349,4 @@ PageAdditions RunSection::page(const PageSubject& subject) const {
     return added;
 }
 
-}  // namespace ispace
+}  // namespace ispace::runs

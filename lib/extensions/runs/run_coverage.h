@@ -18,7 +18,7 @@
 #include "scene/scene.h"
 #include "sense/detection.h"
 
-namespace ispace {
+namespace ispace::runs {
 
 /// The longest unseen interval of a mover.
 struct UnseenInterval {
@@ -94,4 +94,4 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
                        RunChanges* changes = nullptr,
                        const std::function<bool(double time)>& advance = {});
 
-}  // namespace ispace
+}  // namespace ispace::runs

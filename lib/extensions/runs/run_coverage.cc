@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coverage/run_coverage.h"
+#include "extensions/runs/run_coverage.h"
 
 #include <tbb/parallel_for.h>
 
@@ -14,7 +14,7 @@
 #include "geom/tolerance.h"
 #include "sense/selection.h"
 
-namespace ispace {
+namespace ispace::runs {
 
 namespace {
 
@@ -349,4 +349,4 @@ RunCoverage measureRun(const Scene& start, RunReader& reader, const WatchOptions
     return run;
 }
 
-}  // namespace ispace
+}  // namespace ispace::runs
