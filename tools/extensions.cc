@@ -48,6 +48,7 @@ const Extensions& extensions() {
         ISPACE_NAV2
         ISPACE_NAVIGATION
         ISPACE_NODES
+        ISPACE_PAGES
         ISPACE_POSTURES
         ISPACE_PRESENCE
         ISPACE_PRESSURE

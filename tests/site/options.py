@@ -6,8 +6,6 @@ options in lib/extensions/NAME/site_rows.py: OPTIONS and, where they need them, 
 """
 import pathlib
 import runpy
-import struct
-import zlib
 
 from words import COARSE, Exempt, LASERS, MESH, OUT, PLAN, RECORD, RUN, SENSOR, TIMES
 
@@ -36,23 +34,10 @@ human  id=ann at=-2,1.5 path=-2,1.5;2,1.4;-0.4,1.6 speed=0.8
 """
 
 
-def png():
-    """Returns a small picture, the logo."""
-
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-
-    rows = b"".join(b"\0" + bytes([40 * y, 90, 160] * 6) for y in range(6))
-    head = struct.pack(">IIBBBBB", 6, 6, 8, 2, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-
-
 FILES = {
     "lay.3dm": LAYOUT,
     "fixed.3dm": "".join(line for line in LAYOUT.splitlines(True) if "r1" not in line),
     "other.3dm": LAYOUT.replace("heading=45", "heading=80"),
-    "logo.png": png(),
-    "prices.csv": "item,price EUR\nurg-04lx,1500\ndome-2.8-1080p,200\n",
     "places.csv": "-2,0,0\n0,1,90\n2.5,-1,180\n1.5,1.5,200\n",
     "poses.tum": "0 -1 0.6 0 0 0 0 1\n0.5 -0.5 0.6 0 0 0 0.1 0.995\n1 0 0.6 0 0 0 0.2 0.98\n",
     "list": "room.env lay.3dm\nroom.env other.3dm\n",
@@ -216,14 +201,6 @@ OPTIONS = {
         "--heat": f"--heat heat.svg {LASERS}",
         "--trace": f"--trace trace.csv {LASERS}",
         "--report": f"--report page.html {LASERS}",
-        "--title": f"--title Hall --report page.html {LASERS}",
-        "--project": f"--project Hall --report page.html {LASERS}",
-        "--client": f"--client Ann --report page.html {LASERS}",
-        "--author": f"--author Ann --report page.html {LASERS}",
-        "--logo": f"--logo logo.png --report page.html {LASERS}",
-        "--paper": f"--paper letter --report page.html {LASERS}",
-        "--prices": f"--prices prices.csv --material list.csv {SENSOR}",
-        "--material": f"--material list.csv {SENSOR}",
         "--export-mps": f"--export-mps model.mps {LASERS}",
         "--shard": f"--shard 1/2 {LASERS} -o out.part",
         "--merge": "!!--merge -o out.3dm a.part b.part",
@@ -275,14 +252,6 @@ OPTIONS = {
     "coverage": with_words("--json") | {
         "--json": "--json",
         "--report": "--report page.html",
-        "--title": "--title Hall --report page.html",
-        "--project": "--project Hall --report page.html",
-        "--client": "--client Ann --report page.html",
-        "--author": "--author Ann --report page.html",
-        "--logo": "--logo logo.png --report page.html",
-        "--paper": "--paper letter --report page.html",
-        "--prices": "--prices prices.csv --material list.csv",
-        "--material": "--material list.csv",
         "--batch": "!--batch list",
         "--shard": "!--batch list --shard 1/2",
         "--resume": "!--batch list --resume -o out.jsonl",

@@ -41,6 +41,9 @@ for name, rows in offers.items():
             if all(f"`{offer}` is none of" in said(tool, "-", "-o", "x", "--to", offer, text="")
                    for tool in ("envc", "coverage")):
                 faults.append(f"{name} writes no {offer}")
+        elif owner == "report":
+            if f"`.{offer}`" in (about := said("coverage", "-", "--report", f"x.{offer}", text="")):
+                faults.append(f"{name} writes no report {offer}: {about}")
         elif owner == "line":
             with tempfile.NamedTemporaryFile("w", suffix=".txt") as script:
                 script.write(f"{offer}\n")

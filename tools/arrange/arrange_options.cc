@@ -326,7 +326,8 @@ void ArrangeCommand::addFileOptions() {
         "--report", "FILE", options_.report_file,
         "write a report of the layout for people (.html, .pdf), or that of coverage --json (.json)",
         Enters::Nothing);
-    addReportOptions(line_, options_.page);
+    options_.reports = std::make_shared<ReportExtensions>(extensions().reports());
+    options_.reports->declare(line_);
     line_.file("--export-mps", "FILE", options_.mps_file,
                "write the model for solvers of mixed-integer programs (glpsol, cbc)",
                Enters::Nothing);

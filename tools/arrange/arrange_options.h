@@ -15,7 +15,7 @@
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
 #include "cli/proof_extension.h"
-#include "cli/report_options.h"
+#include "cli/report_group.h"
 
 namespace ispace {
 
@@ -37,9 +37,9 @@ struct ArrangeToolOptions {
     std::shared_ptr<ArrangeExtensions> groups;        ///< of extensions
     std::string places_file;
     std::string trace_file, curve_file, mps_file, report_file, heat_file;
-    ReportWords page;                  ///< of --report and --material
-    ExtensionTask task;                ///< instead of a layout; empty: none
-    std::optional<double> time_limit;  ///< seconds
+    std::shared_ptr<ReportExtensions> reports;  ///< of extensions, for people
+    ExtensionTask task;                         ///< instead of a layout; empty: none
+    std::optional<double> time_limit;           ///< seconds
     BatchOptions batch;
     double checkpoint_interval = 5;  ///< seconds, of --resume
     SceneRules rules;

@@ -11,8 +11,6 @@
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
 #include "report/map/map.h"
-#include "report/page/coverage_page.h"
-#include "site/site_page.h"
 #include "trace/ray_world.h"
 
 namespace ispace {
@@ -209,25 +207,21 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
     ArrangeFindings findings = options.groups->judge(judged);
     if (work.how.objective) options.objective->judge(judged, findings);
     SiteParts& parts = findings.parts;
-    const std::string suffix = suffixOf(options.report_file);
-    if (suffix == "json") return siteCoverageJson(site, coverage, parts);
-    SitePageInput page{site, coverage, nameOf(work.input), command, targetOf(work, arrangement)};
-    page.parts = std::move(parts);
-    page.more.push_back(resultOf(options, work, arrangement));
-    page.cover = coverOf(options.page);
-    page.paper = paperOf(options.page);
-    page.prices = pricesOf(options.page);
+    const ReportGroup* const form = options.reports->of(options.report_file);
+    if (form == nullptr) return siteCoverageJson(site, coverage, parts);
+    SiteReport report{site, coverage, nameOf(work.input), command, targetOf(work, arrangement)};
+    report.parts = std::move(parts);
+    report.more.push_back(resultOf(options, work, arrangement));
     const auto progress = makeProgress("arrange", options.common.progress, options.common.quiet);
-    page.progress = progress.get();
-    return suffix == "pdf" ? pdfOf(sitePage(page)) : htmlOf(sitePage(page));
+    report.progress = progress.get();
+    return form->bytesOf(form->page(report, options.report_file), options.report_file);
 }
 
-void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
-                     const Arrangement& arrangement, const Document& layout) {
-    if (options.page.material.empty() && options.page.prices.empty()) return;
+void writeReportLists(const ArrangeToolOptions& options, const ArrangeWork& work,
+                      const Arrangement& arrangement, const Document& layout) {
+    if (!options.reports->isAsked()) return;
     const SiteScene site = laidOut(work, arrangement, layout);
-    if (const std::string text = writeMaterialOf(options.page, site.scenes); !text.empty())
-        warn(options.common, "arrange", text);
+    warn(options.common, "arrange", options.reports->writeFiles(site.scenes));
 }
 
 }  // namespace ispace

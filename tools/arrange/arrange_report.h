@@ -28,9 +28,9 @@ std::string reportFile(const ArrangeToolOptions& options, const ArrangeWork& wor
                        const Arrangement& arrangement, const Document& layout,
                        const std::string& command);
 
-/// Writes --material, and warns of prices that no item of the layout has.
-void writeMaterialOf(const ArrangeToolOptions& options, const ArrangeWork& work,
-                     const Arrangement& arrangement, const Document& layout);
+/// Writes the lists that go with a report, such as --material, with their warnings.
+void writeReportLists(const ArrangeToolOptions& options, const ArrangeWork& work,
+                      const Arrangement& arrangement, const Document& layout);
 
 /// Measures an objective with a search of its own on the written layout; empty without one.
 ArrangeFindings figuresOf(const ArrangeToolOptions& options, const ArrangeWork& work,

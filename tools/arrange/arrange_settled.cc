@@ -35,15 +35,11 @@ void ArrangeCommand::settle() {
     ArrangeOptions& how = options_.how;
     options_.proof = ofOption("--proof", [this] { return proofs_.find(words_.proof); });
     proofs_.check(line_, options_.proof.get());
-    std::vector<const char*> single = {"--curve",
-                                       "--trace",
-                                       "--report",
-                                       "--material",
-                                       "--export-mps",
-                                       "--share",
-                                       "--checkpoint-interval",
-                                       "--alternatives",
-                                       "--heat"};
+    std::vector<const char*> single = {"--curve",        "--trace", "--report",
+                                       "--export-mps",   "--share", "--checkpoint-interval",
+                                       "--alternatives", "--heat"};
+    for (const ReportGroup::SideFile& beside : options_.reports->files())
+        single.push_back(beside.option);
     if (options_.proof) single.push_back(options_.proof->certificate().name);
     checkBatchOptions(line_, options_.batch, options_.common, options_.operands, single);
     if (!options_.batch.list.empty() && options_.places_file == "-")
@@ -161,9 +157,13 @@ namespace {
 std::vector<std::pair<const char*, const std::string*>> sideFiles(
     const ArrangeToolOptions& options) {
     std::vector<std::pair<const char*, const std::string*>> files = {
-        {"--curve", &options.curve_file},   {"--trace", &options.trace_file},
-        {"--report", &options.report_file}, {"--material", &options.page.material},
-        {"--heat", &options.heat_file},     {"--export-mps", &options.mps_file}};
+        {"--curve", &options.curve_file},
+        {"--trace", &options.trace_file},
+        {"--report", &options.report_file}};
+    for (const ReportGroup::SideFile& beside : options.reports->files())
+        files.emplace_back(beside.option, beside.file);
+    files.emplace_back("--heat", &options.heat_file);
+    files.emplace_back("--export-mps", &options.mps_file);
     if (options.proof)
         files.emplace_back(options.proof->certificate().name, options.proof->certificate().file);
     return files;
@@ -187,9 +187,7 @@ void ArrangeCommand::settleFiles() const {
     for (const auto& [name, file] : sideFiles(options_))
         if (std::string_view(name) != "--heat") mustBeOneFile(name, *file);
     if (!options_.curve_file.empty()) (void)outputFormat({}, options_.curve_file, curveFormats());
-    if (!options_.report_file.empty())
-        (void)outputFormat({}, options_.report_file, {"json", "html", "pdf"});
-    checkReportOptions(options_.page, options_.report_file);
+    options_.reports->take(options_.report_file);
     if (!options_.heat_file.empty())
         (void)outputFormat({}, options_.heat_file, {"png", "svg", "pdf"});
 }
@@ -249,7 +247,7 @@ void ArrangeCommand::becomeMerge(const ArrangeToolOptions& merge, Shared what, i
     options_.curve_file = merge.curve_file;
     options_.mps_file = merge.mps_file;
     options_.report_file = merge.report_file;
-    options_.page = merge.page;
+    options_.reports = merge.reports;
     options_.heat_file = merge.heat_file;
     options_.how.wants_gains = merge.how.wants_gains;
     options_.batch = BatchOptions();

@@ -56,7 +56,7 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
     if (!options.report_file.empty())
         writeAll(options.report_file,
                  reportFile(options, work, arrangement, layout, command.historyLine(input.named)));
-    writeMaterialOf(options, work, arrangement, layout);
+    writeReportLists(options, work, arrangement, layout);
     if (!options.heat_file.empty()) writeHeat(options, work, arrangement);
     if (const std::string file = options.certificateFile(); !file.empty() && arrangement.proof)
         if (const auto certificate = arrangement.proof->certificate(parts.history)) {
@@ -155,7 +155,8 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimOutput(options.curve_file, "--curve");
     claimOutput(options.mps_file, "--export-mps");
     claimOutput(options.report_file, "--report");
-    claimOutput(options.page.material, "--material");
+    for (const ReportGroup::SideFile& beside : options.reports->files())
+        claimOutput(*beside.file, beside.option);
     claimOutput(options.heat_file, "--heat");
     const std::string certificate = options.certificateFile();
     claimOutput(certificate, "--certificate");
@@ -169,8 +170,10 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     claimHeat(options, work);
     for (const std::string* file :
          {&options.common.output, &options.trace_file, &options.curve_file, &options.mps_file,
-          &options.report_file, &options.page.material, &options.heat_file, &certificate})
+          &options.report_file, &options.heat_file, &certificate})
         mustBeWritable(*file);
+    for (const ReportGroup::SideFile& beside : options.reports->files())
+        mustBeWritable(*beside.file);
     warnOfSearch(options, work);
     bool is_done = false;
     const auto results = resultsOf(command, work, std::move(parts), is_done);

@@ -123,10 +123,9 @@ void checkProduct(const CommandLine& line, CoverageToolOptions& o, const std::st
 
 /// A list of scenes has only reports as product.
 void checkBatch(const CommandLine& line, const CoverageToolOptions& o) {
-    std::vector<const char*> single = {"--report",  "--material", "--prices", "--title",
-                                       "--project", "--client",   "--author", "--logo",
-                                       "--paper",   "--compare"};
+    std::vector<const char*> single = {"--report", "--compare"};
     single.insert(single.end(), std::begin(kMapOptions), std::end(kMapOptions));
+    for (const std::string& option : o.reports->options()) single.push_back(option.c_str());
     for (const std::string& option : o.groups->options()) single.push_back(option.c_str());
     checkBatchOptions(line, o.batch, o.common, o.operands, single);
     static_cast<void>(outputFormat({}, o.common.output, {"jsonl", "json"}));
@@ -137,13 +136,6 @@ void checkOne(const CommandLine& line, CoverageToolOptions& o, const std::string
         if (line.given(option))
             throw UsageError(std::string(option) + " is about many scenes: give --batch LIST");
     checkProduct(line, o, to);
-}
-
-void checkReport(const CoverageToolOptions& o) {
-    if (isStdout(o.report))
-        throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
-    // Rejects another suffix.
-    static_cast<void>(outputFormat({}, o.report, {"json", "html", "pdf"}));
 }
 
 }  // namespace
@@ -164,7 +156,8 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
               "also write the report there: as JSON (.json), or for people as a page with maps and "
               "the sheet of an installer (.html, .pdf)",
               Enters::Nothing);
-    addReportOptions(line, o.page);
+    o.reports = std::make_shared<ReportExtensions>(extensions().reports());
+    o.reports->declare(line);
     addListOption(line, o.batch, "the output is a report a line, as JSON, in its order");
     addBatchOptions(line, o.batch, "of the lines of LIST; cat joins their outputs", false);
     addCacheOption(line, o.batch);
@@ -248,10 +241,11 @@ CoverageToolOptions parseCoverageOptions(int argc, const char* const* argv) {
         checkBatch(line, o);
     o.groups->take(line);
     o.command = line.historyLine({});
-    if (line.given("--report")) checkReport(o);
-    checkReportOptions(o.page, o.report);
-    const bool is_page = !o.report.empty() && suffixOf(o.report) != "json";
-    o.measure.keep_depths = o.format != nullptr || is_page;  // for drawing
+    if (line.given("--report") && isStdout(o.report))
+        throw UsageError("the report goes to stdout anyway: give --report a file, or --json alone");
+    o.reports->take(o.report);
+    const bool draws = o.format != nullptr || o.reports->of(o.report) != nullptr;
+    o.measure.keep_depths = draws;
     return o;
 }
 

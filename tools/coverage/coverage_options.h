@@ -10,7 +10,7 @@
 #include "cli/common_options.h"
 #include "cli/coverage_group.h"
 #include "cli/option_group.h"
-#include "cli/report_options.h"
+#include "cli/report_group.h"
 #include "coverage/requirement.h"
 #include "report/coverage_formats.h"
 #include "report/map/map.h"
@@ -28,14 +28,14 @@ struct CoverageToolOptions {
     BatchOptions batch;              ///< a list of scenes to report on
     std::string other;               ///< LAYOUT to compare with; "": no comparison
     bool json = false;
-    std::string report;  ///< file for the report as JSON besides stdout; "": no file
+    std::string report;                      ///< file for the report besides stdout; "": no file
     const CoverageFormat* format = nullptr;  ///< of the product; null without one
     std::string trace;  ///< file of tried poses of a search, for the map; "" without
     MapOptions map;
     std::vector<double> speeds = {0.3, 0.6, 1};  ///< of floor seen by 0, 1, ... sensors
     SceneRules rules;
     std::string history_line;
-    ReportWords page;                            ///< of --report and --material
+    std::shared_ptr<ReportExtensions> reports;   ///< of extensions, for people
     std::shared_ptr<CoverageExtensions> groups;  ///< of extensions
     ExtensionTask task;                          ///< instead of a report; empty: none
 };

@@ -21,7 +21,6 @@
 #include "coverage/coverage_run.h"
 #include "report/coverage_formats.h"
 #include "scene/scene.h"
-#include "site/site_page.h"
 #include "tools.h"
 
 namespace {
@@ -65,31 +64,27 @@ void forgetViews(SiteCoverage& coverage) {
 /// show: these are freed before it is written, see forgetViews().
 std::string reportFile(const CoverageToolOptions& options, const SiteInput& input,
                        SiteResults& results) {
-    const std::string suffix = suffixOf(options.report);
+    const ReportGroup* const form = options.reports->of(options.report);
     const SiteCoverage& coverage = results.coverage;
-    if (suffix == "json") return siteCoverageJson(input.building, coverage, results.parts());
-    SitePageInput page{input.building, coverage, "", options.history_line};
-    if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
-    const auto add = [&page](const std::string& phrase, const Verdict& verdict) {
-        page.requirements.push_back({phrase, verdict.is_met, verdict.text, verdict.margin});
+    if (form == nullptr)
+        return siteCoverageJson(input.building, coverage, results.parts());
+    SiteReport report{input.building, coverage, "", options.history_line};
+    if (input.environment_operand != "-") report.name = baseName(input.environment_operand);
+    const auto add = [&report](const std::string& phrase, const Verdict& verdict) {
+        report.requirements.push_back({phrase, verdict.is_met, verdict.text, verdict.margin});
     };
     for (const Requirement& requirement : options.requirements)
         add(requirementPhrase(requirement),
             checkRequirement(requirement, input.building, coverage));
     for (const JudgedShare& one : results.found.judged)
         if (!one.phrase.empty()) add(one.phrase, one.verdict);
-    page.parts = results.parts();
-    page.findings = sensorFindings(input.building);
-    page.media =
-        suffix == "pdf" ? CoveragePageInput::Media::Paper : CoveragePageInput::Media::Screen;
-    page.cover = coverOf(options.page);
-    page.paper = paperOf(options.page);
-    page.prices = pricesOf(options.page);
+    report.parts = results.parts();
+    report.findings = sensorFindings(input.building);
     const auto progress = makeProgress("coverage", options.common.progress, options.common.quiet);
-    page.progress = progress.get();
-    const ReportPage pages = sitePage(page);
+    report.progress = progress.get();
+    const ReportPage page = form->page(report, options.report);
     forgetViews(results.coverage);
-    return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
+    return form->bytesOf(page, options.report);
 }
 
 void coverSite(CoverageToolOptions options, JunitFile& junit) {
@@ -98,7 +93,8 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     warnOfImport(options.common, "coverage", input);
     std::vector<std::string> files = input.files;
     if (!options.report.empty()) mustBeWritable(options.report);
-    if (!options.page.material.empty()) mustBeWritable(options.page.material);
+    for (const ReportGroup::SideFile& beside : options.reports->files())
+        mustBeWritable(*beside.file);
     SiteResults& results = *leftToExit(std::make_unique<SiteResults>());
     results.tried = readTried(options, input);
     if (!options.trace.empty()) files.push_back(options.trace);
@@ -115,8 +111,8 @@ void coverSite(CoverageToolOptions options, JunitFile& junit) {
     options.groups->measure(site, results.found, true);
     const std::vector<JunitCase> verdicts = judgeAll(options, input.building, results);
     if (!options.report.empty()) writeAll(options.report, reportFile(options, input, results));
-    if (const std::string text = writeMaterialOf(options.page, input.rooms()); !text.empty())
-        warn(options.common, "coverage", text);
+    if (options.reports->isAsked())
+        warn(options.common, "coverage", options.reports->writeFiles(input.rooms()));
     const SiteParts parts = results.parts();
     writeAll("-", options.json ? siteCoverageJson(input.building, results.coverage, parts)
                                : siteCoverageText(input.building, results.coverage, parts));
@@ -166,11 +162,13 @@ void measureList(const CoverageToolOptions& options) {
 void coverage(const CoverageToolOptions& options) {
     limitThreads(options.common.threads);
     mustBeOneFile("--report", options.report);
-    mustBeOneFile("--material", options.page.material);
+    for (const ReportGroup::SideFile& beside : options.reports->files())
+        mustBeOneFile(beside.option, *beside.file);
     mustBeOneFile("--junit", options.junit);
     claimOutputs(options.common);
     claimOutput(options.report, "--report");
-    claimOutput(options.page.material, "--material");
+    for (const ReportGroup::SideFile& beside : options.reports->files())
+        claimOutput(*beside.file, beside.option);
     claimOutput(options.junit, "--junit");
     if (options.format != nullptr && options.format->beside_suffix != nullptr)
         claimOutput(withSuffix(options.common.output, options.format->beside_suffix),

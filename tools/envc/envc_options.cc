@@ -96,6 +96,7 @@ void addProductOptions(CommandLine& line, EnvcOptions& options, std::string& to)
               Enters::Nothing);
     line.flag("--json", options.json, "the report of --info, or --rooms list, as JSON",
               Enters::Nothing);
+    options.reports = std::make_shared<const ReportExtensions>(extensions().reports());
     line.file(
         "--report", "FILE", options.report,
         "write a report of the room: a page with its plan (.html, .pdf), or the JSON of --info "
@@ -237,7 +238,7 @@ void checkCombination(const CommandLine& line, const EnvcOptions& options) {
         throw UsageError("--suggest is about the findings of --check: give both");
     if (line.given("--report")) {
         if (isStdout(options.report)) throw UsageError("give --report a file, such as room.html");
-        (void)outputFormat({}, options.report, {"html", "pdf", "json"});
+        options.reports->take(options.report);
         if (options.info || options.check || options.list_rooms ||
             (options.format != nullptr && options.format->write == nullptr))
             throw UsageError(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "cli/common_options.h"
 #include "cli/option_group.h"
+#include "cli/report_group.h"
 #include "io/exporters.h"
 #include "io/importers.h"
 #include "record/edit.h"
@@ -24,8 +26,9 @@ struct EnvcOptions {
     const ExportFormat* format =
         nullptr;  ///< of the product; null with info, check or list, or for a report alone
     bool info = false, json = false, check = false;
-    std::string report;              ///< file of the page for people; "": no file
-    std::optional<int> suggestions;  ///< of a check
+    std::string report;                               ///< file; "": no file
+    std::shared_ptr<const ReportExtensions> reports;  ///< of extensions, for people
+    std::optional<int> suggestions;                   ///< of a check
     std::string changing;            ///< the command for more edits: all that made the room
     bool list_rooms = false;         ///< instead of writing the room; format is null then, too
     std::optional<double> slice;     ///< height of the obstacle map, which is the product then

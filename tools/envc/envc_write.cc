@@ -21,7 +21,6 @@
 #include "envc/envc_site.h"
 #include "passage/building_run.h"
 #include "passage/landing_check.h"
-#include "report/page/room_page.h"
 #include "scene/findings/findings.h"
 #include "scene/findings/remedies.h"
 #include "sim/course_check.h"
@@ -110,46 +109,13 @@ void checkSite(const EnvcOptions& options, const EnvcSite& site) {
 
 namespace {
 
-/// Returns the page of a building: of each storey that of its room, on sheets of its own.
-ReportPage pageOfBuilding(const EnvcOptions& options, const EnvcSite& site,
-                          const SiteScene& building) {
-    ReportPage page;
-    const std::string& input = options.inputs.front();
-    page.title = isStream(input) ? "Building" : baseName(input);
-    double area = 0;
-    for (std::size_t i = 0; i < building.scenes.size(); ++i) {
-        const Scene& scene = *building.scenes[i];
-        area += scene.environment.indoor().area();
-        const Storey& storey = building.document.storeys[i];
-        const std::string name = storey.record.has("name") ? storey.record.text("name") : storey.id;
-        RoomPageInput room{scene, name, options.history_line};
-        if (i == 0) room.warnings = site.document.warnings;
-        ReportPage own = roomPage(room);
-        for (std::size_t k = 0; k < own.sections.size(); ++k) {
-            PageSection& section = own.sections[k];
-            section.id = storey.id + '-' + section.id;
-            section.title = name + ": " + section.title;
-            section.begins_sheet |= k == 0 && i > 0;
-            page.sections.push_back(std::move(section));
-        }
-    }
-    page.subtitle = squareMetres(area) + " · " + building.document.digest();
-    return typeset(std::move(page));
-}
-
-ReportPage pageOfRoom(const EnvcOptions& options, const EnvcSite& site, const Scene& scene) {
-    RoomPageInput page{scene, "", options.history_line, &site.found, site.document.warnings};
-    if (options.inputs.front() != "-") page.name = baseName(options.inputs.front());
-    return roomPage(page);
-}
-
 void writeReport(const EnvcOptions& options, const EnvcSite& site, const SiteScene& building) {
-    const std::string kind = suffixOf(options.report);
-    if (kind == "json") return writeAll(options.report, siteInfoJson(building));
-    const ReportPage page = building.isRoomAlone()
-                                ? pageOfRoom(options, site, *building.scenes.front())
-                                : pageOfBuilding(options, site, building);
-    writeAll(options.report, kind == "pdf" ? pdfOf(page) : htmlOf(page));
+    const ReportGroup* const form = options.reports->of(options.report);
+    if (form == nullptr) return writeAll(options.report, siteInfoJson(building));
+    const std::string& input = options.inputs.front();
+    const RoomReport report{building, isStream(input) ? "" : baseName(input), options.history_line,
+                            &site.found, site.document.warnings};
+    writeAll(options.report, form->bytesOf(form->page(report), options.report));
 }
 
 /// Writes a building as records: its file, and those of its rooms.

@@ -115,6 +115,7 @@ void SimrunCommand::declareRun() {
                "ways of robots and people and the floor that sensors see (.html, .pdf), or as JSON "
                "(.json)",
                Enters::Nothing);
+    o.reports = std::make_shared<const ReportExtensions>(extensions().reports());
     line_.switchFlag("--record-readings", "--no-record-readings", o.records_readings,
                      "record the readings of sensors (default)",
                      "leave them out: events and states remain", Enters::Nothing);
@@ -184,7 +185,7 @@ void SimrunCommand::checkReplay() const {
         if (o.record.empty())
             throw UsageError("--report is about a recorded run: give --record DIR");
         if (isStdout(o.report)) throw UsageError("give --report a file, such as run.html");
-        (void)outputFormat({}, o.report, {"json", "html", "pdf"});
+        o.reports->take(o.report);
     }
     if (o.record.empty())
         for (const char* option :

@@ -10,6 +10,7 @@
 #include "cli/common_options.h"
 #include "cli/option_group.h"
 #include "cli/record_group.h"
+#include "cli/report_group.h"
 #include "cli/run_bridge.h"
 #include "cli/run_judge.h"
 #include "server/server.h"
@@ -35,7 +36,8 @@ struct SimrunOptions {
     std::optional<SimTime> until;
     bool noise = false;
     std::string script;                                     ///< "" without; "-" is stdin
-    std::string report;                                     ///< page for people; "" without
+    std::string report;                                     ///< file; "" without
+    std::shared_ptr<const ReportExtensions> reports;        ///< of extensions, for people
     std::shared_ptr<const RecordExtensions> records;        ///< of extensions
     std::string record;                                     ///< folder; "" without
     std::uint64_t max_recorded = std::uint64_t{16} << 30U;  ///< bytes

@@ -5,7 +5,6 @@
 #include "cli/common_options.h"
 #include "cli/progress_bar.h"
 #include "site/site_coverage.h"
-#include "site/site_page.h"
 
 namespace ispace {
 
@@ -16,15 +15,14 @@ std::string reportFile(const SimrunOptions& options, const SiteInput& input, con
     const SiteCoverage coverage = measureSite(building, {}, progress.get());
     SiteParts parts;
     options.records->report({input, options.record, options.common, options.rules}, parts);
-    const std::string suffix = suffixOf(options.report);
-    if (suffix == "json") return siteCoverageJson(building, coverage, parts);
-    SitePageInput page{building, coverage, "", command, {}, parts};
-    if (input.environment_operand != "-") page.name = baseName(input.environment_operand);
+    const ReportGroup* const form = options.reports->of(options.report);
+    if (form == nullptr) return siteCoverageJson(building, coverage, parts);
+    SiteReport report{building, coverage, "", command, {}, parts};
+    if (input.environment_operand != "-") report.name = baseName(input.environment_operand);
     for (const RunVerdict& verdict : judge.verdicts())
-        page.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
-    page.progress = progress.get();
-    const ReportPage pages = sitePage(page);
-    return suffix == "pdf" ? pdfOf(pages) : htmlOf(pages);
+        report.requirements.push_back({verdict.expectation, verdict.is_met, verdict.reason});
+    report.progress = progress.get();
+    return form->bytesOf(form->page(report, options.report), options.report);
 }
 
 }  // namespace ispace

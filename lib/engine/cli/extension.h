@@ -24,6 +24,7 @@
 #include "cli/option_group.h"
 #include "cli/proof_extension.h"
 #include "cli/record_group.h"
+#include "cli/report_group.h"
 #include "cli/run_bridge.h"
 #include "cli/run_judge.h"
 #include "server/client_role.h"
@@ -49,6 +50,7 @@ struct Extension {
     std::unique_ptr<CoverageGroup> (*coverage)() = nullptr;  ///< of reports of `coverage`
     std::unique_ptr<ImportGroup> (*import)() = nullptr;      ///< of importers, of `envc`
     std::unique_ptr<RecordGroup> (*record)() = nullptr;      ///< of records of `simrun`
+    std::unique_ptr<ReportGroup> (*report)() = nullptr;      ///< files of `--report`
     std::unique_ptr<ProofGroup> (*proof)() = nullptr;        ///< of `arrange --proof`
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;        ///< of runs of `simrun`
     std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;      ///< another protocol of a run
@@ -59,7 +61,7 @@ struct Extension {
 struct MissingOffer {
     std::string_view extension;
     /// A tool (`name` is its option), or "record", "format", "export", "objective", "proof",
-    /// "requirement" or "line", of scripts.
+    /// "report", "requirement" or "line", of scripts.
     std::string_view owner;
     std::string_view name;
 };
@@ -79,6 +81,7 @@ class Extensions {
     [[nodiscard]] const std::vector<CoverageRow>& coverage() const { return coverage_; }
     [[nodiscard]] const std::vector<ImportRow>& imports() const { return imports_; }
     [[nodiscard]] const std::vector<RecordRow>& records() const { return records_; }
+    [[nodiscard]] const std::vector<ReportRow>& reports() const { return reports_; }
     [[nodiscard]] const std::vector<ProofRow>& proofs() const { return proofs_; }
     [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
     [[nodiscard]] const std::vector<BridgeRow>& bridges() const { return bridges_; }
@@ -92,6 +95,7 @@ class Extensions {
     std::vector<CoverageRow> coverage_;
     std::vector<ImportRow> imports_;
     std::vector<RecordRow> records_;
+    std::vector<ReportRow> reports_;
     std::vector<ProofRow> proofs_;
     std::vector<MakeJudge> judges_;
     std::vector<BridgeRow> bridges_;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/json_writer.h"
-#include "report/page/page.h"
+#include "report/page.h"
 
 namespace ispace {
 
@@ -76,5 +76,14 @@ using ReportParts = std::vector<std::shared_ptr<const ReportSection>>;
 
 /// Adds sections, and sorts all by rank; equal ones keep their order.
 void join(ReportParts& parts, const ReportParts& more);
+
+/// Returns "met; 87.20% of 4.00 m2 is seen." of a requirement.
+std::string outcomeText(bool is_met, const std::string& finding);
+
+/// Returns " with 250 pixels a metre or more (identify), 1.60 m above the floor" of what was asked
+/// for; "" for any sight of the floor itself.
+std::string judgedAtText(const CoverageReport& report);
+/// The same of rules of faces, which are not on the floor: ", judged on the floor" tells so.
+std::string facesJudgedAtText(const CoverageReport& report);
 
 }  // namespace ispace

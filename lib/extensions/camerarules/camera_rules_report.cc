@@ -8,7 +8,7 @@
 #include "base/message.h"
 #include "base/number.h"
 #include "env/zone.h"
-#include "report/page/coverage_page.h"
+#include "report/report_section.h"
 
 namespace ispace::camerarules {
 

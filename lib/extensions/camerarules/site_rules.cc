@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/glob.h"
 #include "env/zone.h"
-#include "report/page/coverage_page.h"
+#include "report/report_section.h"
 
 namespace ispace::camerarules {
 

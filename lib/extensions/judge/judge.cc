@@ -26,6 +26,7 @@
 #include "extensions/judge/judge_report.h"
 #include "extensions/judge/judged_run.h"
 #include "extensions/judge/track_file.h"
+#include "extensions/pages/page_writer.h"
 #include "geom/polygon.h"
 #include "sense/detection.h"
 
@@ -294,8 +295,8 @@ class TrackJudge : public OptionGroup {
     void writeReport(const Judgement& judgement, const Scene& scene,
                      const std::string& command) const {
         if (report_format_ == "json") return writeAll(report_, judgementJson(judgement));
-        const ReportPage page = typeset(judgementPage(judgement, scene, command));
-        writeAll(report_, report_format_ == "pdf" ? pdfOf(page) : htmlOf(page));
+        const ReportPage page = pages::typeset(judgementPage(judgement, scene, command));
+        writeAll(report_, report_format_ == "pdf" ? pages::pdfOf(page) : pages::htmlOf(page));
     }
 
     void writeFilms(const Judgement& judgement, const Scene& scene,

@@ -12,7 +12,7 @@
 #include "drawing/drawing.h"
 #include "extensions/judge/judged_run.h"
 #include "extensions/judge/track_metrics.h"
-#include "report/page/page.h"
+#include "report/page.h"
 #include "scene/scene.h"
 
 namespace ispace::judge {

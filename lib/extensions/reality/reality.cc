@@ -7,6 +7,7 @@
 #include "base/file.h"
 #include "base/run_files.h"
 #include "cli/outputs.h"
+#include "extensions/pages/page_writer.h"
 #include "extensions/reality/fit.h"
 #include "extensions/reality/reality_report.h"
 #include "scene/placement_schemas.h"
@@ -156,8 +157,9 @@ class RealityOptions final : public OptionGroup {
                                                                        : PictureFormat::Pdf));
         }
         if (page_.empty()) return;
-        const ReportPage page = realityPage(report, logged, scene.environment, input.history_line);
-        writeAll(page_, pageFormat() == "html" ? htmlOf(typeset(page)) : pdfOf(typeset(page)));
+        const ReportPage page =
+            pages::typeset(realityPage(report, logged, scene.environment, input.history_line));
+        writeAll(page_, pageFormat() == "html" ? pages::htmlOf(page) : pages::pdfOf(page));
     }
 
     std::string log_, page_, fit_, model_;

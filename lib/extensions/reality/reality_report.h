@@ -11,7 +11,7 @@
 #include "extensions/reality/beam_model.h"
 #include "extensions/reality/compare.h"
 #include "extensions/reality/plan_errors.h"
-#include "report/page/page.h"
+#include "report/page.h"
 
 namespace ispace::reality {
 
