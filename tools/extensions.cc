@@ -35,6 +35,7 @@ const Extensions& extensions() {
         ISPACE_GOALS
         ISPACE_EVENNESS
         ISPACE_EXPECT
+        ISPACE_FILMS
         ISPACE_GAZEBO
         ISPACE_HEADS
         ISPACE_IFC

@@ -44,6 +44,9 @@ for name, rows in offers.items():
         elif owner == "report":
             if f"`.{offer}`" in (about := said("coverage", "-", "--report", f"x.{offer}", text="")):
                 faults.append(f"{name} writes no report {offer}: {about}")
+        elif owner == "drawing":
+            if f"the extension {name}," in (about := said("simrun", "--replay", offer, "-o", "x.png")):
+                faults.append(f"{name} draws no {offer}: {about}")
         elif owner == "line":
             with tempfile.NamedTemporaryFile("w", suffix=".txt") as script:
                 script.write(f"{offer}\n")

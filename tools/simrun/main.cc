@@ -19,7 +19,7 @@ using namespace ispace;
 
 /// Reports before the run which outputs cannot be written.
 void claimFiles(const SimrunOptions& options) {
-    if (!options.drawing.format.empty()) claimOutputs(options.common);
+    if (options.drawing) claimOutputs(options.common);
     claimOutput(options.port_file, "--port-file");
     claimOutput(options.junit, "--junit");
     options.judges->claim();
@@ -37,7 +37,7 @@ void simrun(const SimrunCommand& command) {
     claimFiles(options);
     JunitFile junit("simrun", options.junit);
     junit.during(options.operands, [&] {
-        if (!options.drawing.format.empty()) return drawRecord(options);
+        if (options.drawing) return drawRecord(options);
         serve(*openSite(command), options, junit);
     });
 }

@@ -11,7 +11,6 @@
 #include "cli/common_options.h"
 #include "cli/outputs.h"
 #include "cli/storey_operands.h"
-#include "drawing/film.h"
 #include "extensions.h"
 #include "simrun/simrun_record.h"
 
@@ -51,8 +50,8 @@ SimrunCommand::SimrunCommand(int argc, const char* const* argv)
     declareRun();
     line_.group("Replays");
     declareReplay();
-    line_.group("Pictures and films of a record");
-    declareDrawing();
+    drawings_ = std::make_shared<DrawingExtensions>(extensions().drawings());
+    drawings_->declare(line_);
     line_.group("Tests");
     declareJudgement();
     line_.group("The server");
@@ -155,13 +154,6 @@ void SimrunCommand::takeJudgement() {
         throw UsageError("--junit writes what became of expectations: give --expect");
 }
 
-namespace {
-
-/// Of pictures, then of films.
-std::vector<std::string> formats() { return {"png", "svg", "pdf", "y4m", "gif"}; }
-
-}  // namespace
-
 void SimrunCommand::declareReplay() {
     SimrunOptions& o = options_;
     line_.file(
@@ -208,38 +200,12 @@ void SimrunCommand::checkReplay() const {
         throw UsageError("--record would replace what --replay reads: give another folder");
 }
 
-void SimrunCommand::declareDrawing() {
-    DrawingOptions& o = options_.drawing;
-    line_.choice("--to", to_, formats(), "format of FILE (default: its suffix, else png)",
-                 Enters::Nothing);
-    constexpr int kMinWidth = 200, kMaxWidth = 10000;
-    line_.count("--width", "PIXELS", o.width, kMinWidth, kMaxWidth,
-                "width of the picture or the film", Enters::Nothing);
-    const auto positive = [this](const std::string& name, double& variable, double most,
-                                 const std::string& help) {
-        line_.parsed(
-            name, "N",
-            [&variable, most](const std::string& text) {
-                const auto value = parseDouble(text);
-                constexpr double kMinValue = 0.001;
-                if (!value || *value < kMinValue || *value > most)
-                    throw UsageError(excerpt(text) + " is no number from 0.001 to " +
-                                     formatDouble(most));
-                variable = *value;
-            },
-            help, Enters::Nothing);
-    };
-    positive("--fps", o.fps, 1000, "pictures a second of the film (default 25)");
-    positive("--speed", o.speed, 1e6, "simulated seconds in a second of the film (default 1)");
-}
-
 void SimrunCommand::takeDrawing() {
     SimrunOptions& o = options_;
     if (!line_.given("--output")) {
-        for (const char* option : {"--to", "--width", "--fps", "--speed"})
+        for (const std::string& option : drawings_->options())
             if (line_.given(option))
-                throw UsageError(std::string(option) +
-                                 " is about a picture of a record: give -o FILE");
+                throw UsageError(option + " is about a picture of a record: give -o FILE");
         return;
     }
     if (o.replay.empty())
@@ -252,23 +218,7 @@ void SimrunCommand::takeDrawing() {
     for (const std::string& option : of_runs)
         if (line_.given(option))
             throw UsageError(option + " does not go with -o, which serves nobody");
-    const bool is_set = OutputSet::of(o.common.output).has_value();
-    o.drawing.format =
-        is_set && to_.empty() ? "png" : outputFormat(to_, o.common.output, formats());
-    if (is_set && o.drawing.format != "png")
-        throw UsageError("the pictures of a film are PNG; a film in one file is .y4m or .gif");
-    const bool is_gif = o.drawing.format == "gif";
-    const bool is_file = is_gif || o.drawing.format == "y4m";
-    const bool is_film = is_set || is_file;
-    for (const char* option : {"--fps", "--speed", "--from"})
-        if (!is_film && line_.given(option))
-            throw UsageError(std::string(option) +
-                             " is about films: give -o FILE.y4m, FILE.gif or a folder");
-    if (!is_set && o.drawing.format != "svg")
-        refuseTerminal(o.common.output, is_file ? "a film" : "a picture");
-    if (is_gif && (o.drawing.fps < GifFilm::kSlowest || o.drawing.fps > GifFilm::kFastest))
-        throw UsageError("--fps of a GIF is from " + formatDouble(GifFilm::kSlowest) + " to " +
-                         formatDouble(GifFilm::kFastest) + ": give another one, or -o FILE.y4m");
+    o.drawing = drawings_->take(line_, o.common.output);
 }
 
 void SimrunCommand::declareServer() {

@@ -8,6 +8,7 @@
 
 #include "cli/command_line.h"
 #include "cli/common_options.h"
+#include "cli/drawing_group.h"
 #include "cli/option_group.h"
 #include "cli/record_group.h"
 #include "cli/report_group.h"
@@ -18,13 +19,6 @@
 #include "sim/simulation.h"
 
 namespace ispace {
-
-/// Drawing of a record, for -o.
-struct DrawingOptions {
-    std::string format;          ///< png, svg, pdf, y4m or gif; "" without -o
-    int width = 1200;            ///< pixels
-    double fps = 25, speed = 1;  ///< of a film: pictures per second, simulated seconds per second
-};
 
 struct SimrunOptions {
     CommonOptions common;
@@ -44,7 +38,7 @@ struct SimrunOptions {
     std::string replay;                                     ///< folder; "" without
     SimTime from{};                                         ///< of the replay
     bool holds = false;                                     ///< at the end of the replay
-    DrawingOptions drawing;
+    std::shared_ptr<const DrawingGroup> drawing;            ///< for -o; null without
     std::shared_ptr<JudgeExtensions> judges;
     std::string junit;  ///< file; "" without
     std::optional<bool> records_readings;
@@ -74,13 +68,12 @@ class SimrunCommand : public ToolCommand<SimrunOptions> {
     void declareReplay();
     void declareJudgement();
     void checkReplay() const;
-    void declareDrawing();
     void takeDrawing();
     void takeJudgement();
     void declareServer();
     void takeServer();
 
-    std::string to_;
+    std::shared_ptr<DrawingExtensions> drawings_;
 };
 
 }  // namespace ispace

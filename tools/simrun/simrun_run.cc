@@ -30,9 +30,7 @@
 #include "cli/progress_bar.h"
 #include "cli/run_tool.h"
 #include "cli/scene_folder.h"
-#include "drawing/film.h"
 #include "record/text.h"
-#include "report/view/run_picture.h"
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 #include "server/network.h"
@@ -640,94 +638,6 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
 
 namespace {
 
-constexpr double kRounding = 1e-9;  // s
-
-double endOf(const SimrunOptions& options) {
-    return seconds(options.until.value_or(kMaxTime)) + kRounding;
-}
-
-/// Reads the record up to --until; calls `before` for each moment that is still to be added.
-void readRecord(const SimrunOptions& options, RunPicture& picture,
-                const std::function<void(double)>& before) {
-    RunReader reader(options.replay);
-    while (reader.next() && reader.time() <= endOf(options)) {
-        before(reader.time());
-        picture.add(reader);
-    }
-    if (reader.isCut())
-        warn(options.common, "simrun", "the record ends in the midst of a step, which is left out");
-}
-
-/// Returns the time of the last moment up to --until; 0 without one. Drawing takes far longer.
-double lastMoment(const SimrunOptions& options) {
-    double last = 0;
-    RunReader reader(options.replay);
-    while (reader.next() && reader.time() <= endOf(options)) last = reader.time();
-    return last;
-}
-
-/// Takes the pictures of a film: one each 1/fps s of it, and one of the end.
-std::int64_t takeFilm(const SimrunOptions& options, RunPicture& picture,
-                      const std::function<void(const Image&, int)>& write) {
-    const DrawingOptions& film = options.drawing;
-    int count = 0;
-    bool has_moment = false;
-    double last = 0;
-    const auto time_of = [&](int frame) {
-        return seconds(options.from) + frame * film.speed / film.fps;
-    };
-    const auto progress = makeProgress("simrun", options.common.progress, options.common.quiet);
-    const double length = std::max(0.0, lastMoment(options) - seconds(options.from));
-    progress->begin("pictures", 1 + std::llround(length * film.fps / film.speed));
-    readRecord(options, picture, [&](double time) {
-        for (; has_moment && time_of(count) < time - kRounding; ++count) {
-            write(picture.frame(), count);
-            progress->advance(1);
-        }
-        has_moment = true;
-        last = time;
-    });
-    if (last < time_of(0) - kRounding)
-        throw UsageError("--from: the record ends at t=" + formatDouble(last));
-    write(picture.frame(), count);
-    progress->advance(1);
-    progress->end();
-    return count + 1;
-}
-
-std::int64_t writeY4m(const SimrunOptions& options, RunPicture& picture) {
-    FileStream file(options.common.output);
-    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int frame) {
-        if (frame == 0) file.stream() << y4mHeader(image.width, image.height, options.drawing.fps);
-        file.stream() << y4mFrame(image);
-    });
-    file.commit();
-    return count;
-}
-
-std::int64_t writeGif(const SimrunOptions& options, RunPicture& picture) {
-    FileStream file(options.common.output);
-    GifFilm film(options.drawing.fps);
-    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int /*frame*/) {
-        file.stream() << film.add(image);
-    });
-    file.stream() << film.end();
-    file.commit();
-    return count;
-}
-
-std::int64_t writePictures(const SimrunOptions& options, const OutputSet& files,
-                           RunPicture& picture) {
-    const std::string name = "run";
-    EncodeAhead pictures(encodePng, writeAll);
-    const std::int64_t count = takeFilm(options, picture, [&](const Image& image, int frame) {
-        if (frame == 0) files.prepare({name}, true, {".png"});
-        pictures.add(files.fileOf(name, frame, ".png"), image);
-    });
-    pictures.finish();
-    return count;
-}
-
 /// Warns that a run changed its world, of which the picture shows the start.
 void warnOfChanges(const Replay& replay, const CommonOptions& options) {
     if (const auto& time = replay.changedAt())
@@ -743,21 +653,9 @@ void drawRecord(const SimrunOptions& options) {
     if (!input.isOneRoom()) refuseWholeRecord(options.replay);
     Scene scene = input.only();
     if (const auto replay = openReplay(options, scene)) warnOfChanges(*replay, options.common);
-    RunPicture picture(scene, {.width = options.drawing.width, .title = titleOf(options, input)});
-    std::int64_t count = 1;
-    if (const auto files = OutputSet::of(options.common.output)) {
-        count = writePictures(options, *files, picture);
-    } else if (options.drawing.format == "y4m") {
-        count = writeY4m(options, picture);
-    } else if (options.drawing.format == "gif") {
-        count = writeGif(options, picture);
-    } else {
-        readRecord(options, picture, [](double) {});
-        const PictureFormat format = options.drawing.format == "svg"   ? PictureFormat::Svg
-                                     : options.drawing.format == "pdf" ? PictureFormat::Pdf
-                                                                       : PictureFormat::Png;
-        writeAll(options.common.output, picture.write(format));
-    }
+    const std::string title = titleOf(options, input);
+    const std::int64_t count = options.drawing->draw(
+        {scene, options.replay, title, options.from, options.until, options.common});
     writeDependencies(options.common,
                       std::vector<std::string>{RecordedFiles(options.replay).robots});
     logInfo(options.common, "simrun",

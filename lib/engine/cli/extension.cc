@@ -21,6 +21,7 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
         if (each.import != nullptr) imports_.push_back({each.name, each.import});
         if (each.record != nullptr) records_.push_back({each.name, each.record});
         if (each.report != nullptr) reports_.push_back({each.name, each.report});
+        if (each.drawing != nullptr) drawings_.push_back({each.name, each.drawing});
         if (each.proof != nullptr) proofs_.push_back({each.name, each.proof});
         if (each.judge != nullptr) judges_.push_back(each.judge);
         if (each.bridge != nullptr) bridges_.push_back({each.name, each.bridge});
@@ -41,6 +42,8 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
             coverage_.push_back({extension, nullptr, name});
         else if (owner == "report")
             reports_.push_back({extension, nullptr, name});
+        else if (owner == "drawing")
+            drawings_.push_back({extension, nullptr, name});
         else if (owner == "objective")
             objectives_.push_back({extension, nullptr, name});
         else if (owner == "proof")

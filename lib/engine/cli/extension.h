@@ -19,6 +19,7 @@
 
 #include "cli/arrange_group.h"
 #include "cli/coverage_group.h"
+#include "cli/drawing_group.h"
 #include "cli/import_group.h"
 #include "cli/objective_extension.h"
 #include "cli/option_group.h"
@@ -51,6 +52,7 @@ struct Extension {
     std::unique_ptr<ImportGroup> (*import)() = nullptr;      ///< of importers, of `envc`
     std::unique_ptr<RecordGroup> (*record)() = nullptr;      ///< of records of `simrun`
     std::unique_ptr<ReportGroup> (*report)() = nullptr;      ///< files of `--report`
+    std::unique_ptr<DrawingGroup> (*drawing)() = nullptr;    ///< of a record, `simrun -o`
     std::unique_ptr<ProofGroup> (*proof)() = nullptr;        ///< of `arrange --proof`
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;        ///< of runs of `simrun`
     std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;      ///< another protocol of a run
@@ -61,7 +63,7 @@ struct Extension {
 struct MissingOffer {
     std::string_view extension;
     /// A tool (`name` is its option), or "record", "format", "export", "objective", "proof",
-    /// "report", "requirement" or "line", of scripts.
+    /// "report", "drawing" (of a "run"), "requirement" or "line", of scripts.
     std::string_view owner;
     std::string_view name;
 };
@@ -82,6 +84,7 @@ class Extensions {
     [[nodiscard]] const std::vector<ImportRow>& imports() const { return imports_; }
     [[nodiscard]] const std::vector<RecordRow>& records() const { return records_; }
     [[nodiscard]] const std::vector<ReportRow>& reports() const { return reports_; }
+    [[nodiscard]] const std::vector<DrawingRow>& drawings() const { return drawings_; }
     [[nodiscard]] const std::vector<ProofRow>& proofs() const { return proofs_; }
     [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
     [[nodiscard]] const std::vector<BridgeRow>& bridges() const { return bridges_; }
@@ -96,6 +99,7 @@ class Extensions {
     std::vector<ImportRow> imports_;
     std::vector<RecordRow> records_;
     std::vector<ReportRow> reports_;
+    std::vector<DrawingRow> drawings_;
     std::vector<ProofRow> proofs_;
     std::vector<MakeJudge> judges_;
     std::vector<BridgeRow> bridges_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// lib/engine/report/view: recorded runs, drawn on the plan of their room.
+// lib/extensions/films: recorded runs, drawn on the plan of their room.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 #include "scene/run/run_reader.h"
 #include "scene/scene.h"
 
-namespace ispace {
+namespace ispace::films {
 
 struct RunPictureOptions {
     int width = 1200;   ///< pixels; rounded to even for a film
@@ -65,4 +65,4 @@ class RunPicture {
     Image canvas_;  // of a film: plan and ways so far
 };
 
-}  // namespace ispace
+}  // namespace ispace::films

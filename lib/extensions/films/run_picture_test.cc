@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/run_picture.h"
+#include "extensions/films/run_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "drawing/drawing.h"
 #include "support/test_layout.h"
 
-namespace ispace {
+namespace ispace::films {
 namespace {
 
 const Scene& room() {
@@ -94,4 +94,4 @@ TEST(RasterOf, IsWhatThePngHas) {
 }
 
 }  // namespace
-}  // namespace ispace
+}  // namespace ispace::films

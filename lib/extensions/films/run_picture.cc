@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/view/run_picture.h"
+#include "extensions/films/run_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include "scene/robot.h"
 #include "scene/sensor/sensor.h"
 
-namespace ispace {
+namespace ispace::films {
 
 namespace {
 
@@ -223,4 +223,4 @@ Image RunPicture::frame() {
     return rasterOf(now);
 }
 
-}  // namespace ispace
+}  // namespace ispace::films
