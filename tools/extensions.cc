@@ -50,6 +50,7 @@ const Extensions& extensions() {
         ISPACE_NAVIGATION
         ISPACE_NODES
         ISPACE_PAGES
+        ISPACE_PASSAGES
         ISPACE_POSTURES
         ISPACE_PRESENCE
         ISPACE_PRESSURE

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records of runs: robots.csv, people.csv, events.csv, odometry.csv, bumpers.csv, info.csv and
-// lifts.csv, with lines `---` between; an empty file is a missing one. Replays those that it can
+// Records of runs: robots.csv, people.csv, events.csv, odometry.csv, bumpers.csv and info.csv, with
+// lines `---` between; an empty file is a missing one. Replays those that it can
 // read, also as that of one of several worlds.
 #include <array>
 #include <filesystem>
 
 #include "fuzz.h"
-#include "passage/lift_record.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/run/run_changes.h"
@@ -17,8 +16,8 @@ namespace {
 
 using namespace ispace;
 
-constexpr std::array kNames = {"robots.csv",  "people.csv", "events.csv", "odometry.csv",
-                               "bumpers.csv", "info.csv",   "lifts.csv"};
+constexpr std::array kNames = {"robots.csv",   "people.csv",  "events.csv",
+                               "odometry.csv", "bumpers.csv", "info.csv"};
 
 void writeRecord(std::string_view bytes) {
     const std::vector<std::string_view> files = fuzz::filesOf(bytes);
@@ -37,18 +36,6 @@ void checkMoment(const RunReader& reader, double before) {
         fuzz::require(state.member < reader.members().size(), "a state of an unknown member");
     for (const RunBumpers& bumpers : reader.bumpers())
         fuzz::require(!bumpers.hit.empty(), "bumpers without one");
-}
-
-void readLifts() {
-    const std::string file = fuzz::scratchFolder() + "/lifts.csv";
-    if (!std::filesystem::exists(file)) return;
-    LiftReader reader(file, {{"l1", {"ground", "upper"}}, {"", {}}, {"l2", {"upper", "attic"}}});
-    constexpr std::array kTimes = {0, 1, 5, 2, 1000};
-    for (const int time : kTimes)
-        for (const Lift::State& state : reader.at(std::chrono::seconds(time))) {
-            fuzz::require(state.stop < 2 && state.next < 2, "a lift at an unknown stop");
-            fuzz::require(state.since <= std::chrono::seconds(time), "a phase of a later time");
-        }
 }
 
 /// The first steps of a replay, in a separate room.
@@ -74,7 +61,6 @@ void ispace::fuzz::tryInput(std::string_view bytes) {
         require(change.line > 1, "a change without its line");
     if (const auto info = recordedInfo(scratchFolder()))
         require(info->step > 0 && info->steps >= 0, "a run with negative steps");
-    readLifts();
     if (!std::filesystem::exists(RecordedFiles(scratchFolder()).robots)) return;
     RunReader reader(scratchFolder());
     while (reader.next()) {

@@ -9,8 +9,9 @@
 #include <span>
 
 #include "base/number.h"
+#include "cli/building_runs.h"
+#include "extensions.h"
 #include "fuzz.h"
-#include "passage/building_run.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "served_room.h"
@@ -90,13 +91,13 @@ SiteScene tower() {
 class ServedTower {
   public:
     ServedTower() {
-        rooms_.worlds = &run_;
-        for (const RunRoom& room : run_.rooms()) {
+        rooms_.worlds = run_.get();
+        for (const RunRoom& room : run_->rooms()) {
             states_.push_back(std::make_unique<ServerState>(*room.simulation));
             rooms_.states.push_back(states_.back().get());
         }
         for (const auto& state : states_) state->joinRooms(rooms_);
-        run_.onMove([this](const std::string& mover, std::size_t from, std::size_t to) {
+        run_->onMove([this](const std::string& mover, std::size_t from, std::size_t to) {
             rooms_.states[to]->takeOver(*rooms_.states[from], mover);
         });
     }
@@ -104,8 +105,9 @@ class ServedTower {
     template <typename Stepped>
     void run(Stepped stepped) {
         constexpr int kMaxSteps = 200;
-        for (int i = 0; i < kMaxSteps && run_.simulation().owed() > 0; ++i) {
-            run_.simulation().run({}, std::chrono::nanoseconds(0));
+        Simulation& simulation = *run_->rooms().front().simulation;
+        for (int i = 0; i < kMaxSteps && simulation.owed() > 0; ++i) {
+            simulation.run({}, std::chrono::nanoseconds(0));
             stepped();
         }
     }
@@ -117,7 +119,7 @@ class ServedTower {
         options.clock = {Clock::Kind::Step, 1};
         return options;
     }
-    BuildingRun run_{tower(), options()};
+    std::unique_ptr<BuildingWorlds> run_ = extensions().buildings().open(tower(), options());
     ServedRooms rooms_;
     std::vector<std::unique_ptr<ServerState>> states_;
 };

@@ -3,5 +3,5 @@
 # Twenty hours of eight robots and twenty people on three storeys: all arrive at each of their goals.
 . "$(dirname "$0")/common.sh"
 
-"$ISPACE_BINARY_DIR/tests/passage_test" --gtest_also_run_disabled_tests \
+"$ISPACE_BINARY_DIR/tests/passages_test" --gtest_also_run_disabled_tests \
     --gtest_filter='*.DISABLED_EverybodyArrivesInTwentyRushHours' >said || fail "$(cat said)"

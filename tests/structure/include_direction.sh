@@ -25,7 +25,7 @@ violations() {
         layer("io", "drawing"); layer("trace", "scene"); layer("sense", "trace")
         layer("coverage", "sense"); layer("arrange", "coverage"); layer("report", "arrange io")
         layer("site", "report"); layer("sim", "sense"); layer("server", "sim"); layer("client", "")
-        layer("passage", "site sim"); layer("cli", "server passage"); layer("extensions", "cli")
+        layer("cli", "server site"); layer("extensions", "cli")
         heavy = "^(CGAL/|opencv2/|embree|rtcore|cairo|yaml-cpp/|tiny_gltf|tbb/|oneapi/|openssl/)"
         quiet = "(^|[^A-Za-z0-9_])(std::(cout|cerr|clog|cin)|(printf|fprintf|puts|fputs|putchar|" \
                 "perror|exit|_exit|quick_exit|abort|terminate|getenv|secure_getenv|setenv)[ ]*[(]|" \
@@ -38,7 +38,7 @@ violations() {
         split(place, path, "/")
         in_lib = path[1] == "lib"
         folder = path[2]
-        in_test = FILENAME ~ /_test\.cc$/
+        in_test = FILENAME ~ /_test\.(cc|h)$/
         # Separate programs and modules, which no tool links. So are sources that include the classes of ARIA, which
         # print, exit and read the environment.
         is_apart = place ~ /^lib\/((base|raster)\/module|client\/sim_aria)\//
@@ -137,14 +137,14 @@ expect lib/extensions/proofs/poses/a.cc '#include "extensions/proofs/certificate
 expect lib/extensions/proofs/poses/a.cc '#include "arrange/refine.h"' yes
 expect lib/kernel/trace/a.cc '#include "trace/render/render.h"' yes
 expect lib/engine/sim/a.cc '#include "server/server.h"' yes
-expect lib/engine/site/a.cc '#include "passage/lift.h"' yes
-expect lib/engine/sim/a.cc '#include "passage/lift.h"' yes
-expect lib/engine/server/a.cc '#include "passage/lift.h"' yes
-expect lib/engine/passage/a.cc '#include "sim/world.h"' no
+expect lib/engine/sim/a.cc '#include "site/storeys.h"' yes
+expect lib/engine/site/a.cc '#include "sim/world.h"' yes
+expect lib/engine/server/a.cc '#include "extensions/passages/lift.h"' yes
+expect lib/extensions/passages/a.cc '#include "sim/world.h"' no
 expect lib/extensions/reality/a.cc '#include "cli/option_group.h"' no
 expect lib/engine/cli/a.cc '#include "extensions/reality/a.h"' yes
 expect lib/engine/sim/a.h $'//\n// Private to lib/engine/sim: parts\n#include "sim/a.h"' no
-expect lib/engine/passage/a.h $'//\n// Private to lib/engine/sim: parts\n#include "passage/a.h"' yes
+expect lib/extensions/passages/a.h $'//\n// Private to lib/engine/sim: parts\n#include "extensions/passages/a.h"' yes
 expect lib/nowhere/a.cc '#include <vector>' yes
 expect lib/kernel/geom/a.cc '#include "pose.h"' yes
 expect lib/kernel/geom/a.h '#include <CGAL/Arrangement_2.h>' yes

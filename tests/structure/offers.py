@@ -60,6 +60,9 @@ for name, rows in offers.items():
         elif owner == "requirement":
             if "is no share" in (about := said("coverage", "-", "--require", f"{offer}:50%", text="")):
                 faults.append(f"{name} judges no {offer}: {about}")
+        elif owner == "run":
+            if f".{offer}s = " not in (extensions / name / "extension.cc").read_text():
+                faults.append(f"{name} opens no run of a {offer}")
         elif owner == "format":
             read = any("addImporters(" in text
                        for text in (source.read_text() for source in (extensions / name).glob("*.cc")))

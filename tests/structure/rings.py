@@ -98,16 +98,16 @@ def must_be_able_to_fail(rings):
     tree = {
         "lib/kernel/base/error.h": "",
         "lib/engine/arrange/arrange.h": "",
-        "lib/engine/passage/trip.h": '#include "arrange/arrange.h"\n',
+        "lib/extensions/passages/trip.h": '#include "arrange/arrange.h"\n',
         "lib/kernel/base/a.cc": '#include "arrange/arrange.h"\n',
-        "lib/engine/arrange/b.cc": '#include "passage/trip.h"\n#include "base/error.h"\n',
-        "tools/scan/main.cc": '#include "passage/trip.h"\n#include "arrange/arrange.h"\n',
-        "tools/extensions.cc": '#include "passage/trip.h"\n',
+        "lib/engine/arrange/b.cc": '#include "extensions/passages/trip.h"\n#include "base/error.h"\n',
+        "tools/scan/main.cc": '#include "extensions/passages/trip.h"\n#include "arrange/arrange.h"\n',
+        "tools/extensions.cc": '#include "extensions/passages/trip.h"\n',
     }
     wanted = {
         "lib/kernel/base/a.cc -> arrange/arrange.h",
-        "lib/engine/arrange/b.cc -> passage/trip.h",
-        "tools/scan/main.cc -> passage/trip.h",
+        "lib/engine/arrange/b.cc -> extensions/passages/trip.h",
+        "tools/scan/main.cc -> extensions/passages/trip.h",
     }
     locks = {"lib/extensions/locks/lock.cc": '#include "extensions/mqtt/topics.h"\n'}
     if not undeclared(locks, {"locks": ""}) or undeclared(locks, {"locks": "list(APPEND needed_extensions mqtt)"}):

@@ -19,8 +19,7 @@
 #include "cli/storey_operands.h"
 #include "env/zone.h"
 #include "envc/envc_site.h"
-#include "passage/building_run.h"
-#include "passage/landing_check.h"
+#include "extensions.h"
 #include "scene/findings/findings.h"
 #include "scene/findings/remedies.h"
 #include "sim/course_check.h"
@@ -85,9 +84,8 @@ std::string addFindings(const EnvcOptions& options, const SiteScene& building,
     }
     if (building.isRoomAlone()) return moves;
     for (Diagnostic& finding : checkBuilding(building)) findings.add(std::move(finding));
-    for (Diagnostic& finding : BuildingRun::tripFindings(building))
-        findings.add(std::move(finding));
-    for (Diagnostic& finding : landingFindings(building)) findings.add(std::move(finding));
+    if (const auto of_runs = extensions().buildings().findings; of_runs != nullptr)
+        for (Diagnostic& finding : of_runs(building)) findings.add(std::move(finding));
     return moves;
 }
 

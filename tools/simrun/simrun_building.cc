@@ -13,10 +13,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/run_files.h"
+#include "cli/building_runs.h"
 #include "cli/outputs.h"
 #include "cli/storey_operands.h"
-#include "passage/building_run.h"
-#include "passage/building_script.h"
+#include "extensions.h"
 #include "record/text.h"
 #include "scene/run/run_reader.h"
 #include "sim/world_state.h"
@@ -44,24 +44,29 @@ void writeBuilding(const SiteScene& building, const History& history, const std:
     writeAll(folder + '/' + kRecordedBuilding, writeBuildingYaml(whole));
 }
 
-BuildingRun runOf(const SimrunOptions& options, const SiteScene& building) {
+/// \throws UsageError if the build lacks runs of buildings
+std::unique_ptr<BuildingWorlds> worldsOf(const SimrunOptions& options, const SiteScene& building) {
+    const BuildingRuns& runs = extensions().buildings();
+    if (runs.open == nullptr)
+        throw UsageError("the run of a building belongs to the extension " +
+                         std::string(runs.extension) +
+                         ", which this build lacks: --storey ID runs one of its storeys");
     std::optional<RunInfo> recorded;
     if (!options.replay.empty()) recorded = recordedInfo(options.replay, building.document);
-    return BuildingRun(building, {.step = recorded ? recordedTime(recorded->every) : options.step,
-                                  .run = runOptionsOf(options, recorded),
-                                  .clock = options.clock,
-                                  .until = options.until,
-                                  .replay = options.replay,
-                                  .holds = options.holds,
-                                  .changes = [max_work = options.rules.max_work](
-                                                 const std::string& folder, const Scene& start) {
-                                      return changesOfRun(folder, start, max_work);
-                                  }});
+    return runs.open(building, {.step = recorded ? recordedTime(recorded->every) : options.step,
+                                .run = runOptionsOf(options, recorded),
+                                .clock = options.clock,
+                                .until = options.until,
+                                .replay = options.replay,
+                                .holds = options.holds,
+                                .changes = [max_work = options.rules.max_work](
+                                               const std::string& folder, const Scene& start) {
+                                    return changesOfRun(folder, start, max_work);
+                                }});
 }
 
 /// Moves a replay to the time from which it is served.
-void forward(BuildingRun& run, SimTime from) {
-    Simulation& simulation = run.simulation();
+void forward(Simulation& simulation, SimTime from) {
     const SimTime step = simulation.world().stepLength();
     const SimTime first = (from + step - SimTime(1)) / step * step;
     if (first > SimTime(0)) simulation.seek(first);
@@ -74,21 +79,20 @@ void forward(BuildingRun& run, SimTime from) {
 class BuildingRunSite final : public RunSite {
   public:
     BuildingRunSite(const SimrunCommand& command, SiteInput building)
-        : RunSite(command, std::move(building)), run_(runOf(options, input.building)) {
-        forward(run_, options.from);
+        : RunSite(command, std::move(building)), worlds_(worldsOf(options, input.building)) {
+        forward(*worlds_->rooms().front().simulation, options.from);
         claimRecords();
-        if (options.script.empty()) return;
-        script_.emplace(scriptText(options, input), displayName(options.script), run_);
-        run_.simulation().beforeStep([this] { script_->give(run_); });
+        if (!options.script.empty())
+            worlds_->follow(scriptText(options, input), displayName(options.script));
     }
 
-    Worlds& worlds() override { return run_; }
+    Worlds& worlds() override { return *worlds_; }
     [[nodiscard]] const Replay* replay(std::size_t room) const override {
-        return run_.replay(room);
+        return worlds_->replay(room);
     }
     void recordWhole() override {
         writeBuilding(input.building, history, options.record);
-        run_.recordLifts(options.record + '/' + BuildingRun::kLiftFile);
+        worlds_->recordLifts(options.record);
     }
 
   private:
@@ -97,13 +101,12 @@ class BuildingRunSite final : public RunSite {
         if (std::filesystem::exists(RecordedFiles(options.record).robots))
             throw UsageError("--record: " + options.record +
                              " holds the record of one room: give another folder");
-        for (const RunRoom& room : run_.rooms())
+        for (const RunRoom& room : worlds_->rooms())
             for (const std::string& file : Recorder::filesIn(folderOf(options.record, room)))
                 claimOutput(file, "a file of --record");
     }
 
-    BuildingRun run_;
-    std::optional<BuildingScript> script_;
+    const std::unique_ptr<BuildingWorlds> worlds_;
 };
 
 }  // namespace

@@ -26,6 +26,10 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
         if (each.judge != nullptr) judges_.push_back(each.judge);
         if (each.bridge != nullptr) bridges_.push_back({each.name, each.bridge});
         if (each.role != nullptr) roles_.push_back(each.role);
+        if (each.buildings.open != nullptr) {
+            buildings_ = each.buildings;
+            buildings_.extension = each.name;
+        }
         if (each.add != nullptr) each.add();
     }
     std::sort(names_.begin(), names_.end());
@@ -46,6 +50,8 @@ Extensions::Extensions(std::span<const Extension> built, std::span<const Missing
             drawings_.push_back({extension, nullptr, name});
         else if (owner == "objective")
             objectives_.push_back({extension, nullptr, name});
+        else if (owner == "run")
+            buildings_.extension = extension;
         else if (owner == "proof")
             proofs_.push_back({extension, nullptr, name});
         else

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "cli/arrange_group.h"
+#include "cli/building_runs.h"
 #include "cli/coverage_group.h"
 #include "cli/drawing_group.h"
 #include "cli/import_group.h"
@@ -57,13 +58,14 @@ struct Extension {
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;        ///< of runs of `simrun`
     std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;      ///< another protocol of a run
     MakeRoleService role = nullptr;                          ///< requests of the protocol
+    BuildingRuns buildings = {};                             ///< of one extension at most
 };
 
 /// What an extension that a build lacks would bring.
 struct MissingOffer {
     std::string_view extension;
     /// A tool (`name` is its option), or "record", "format", "export", "objective", "proof",
-    /// "report", "drawing" (of a "run"), "requirement" or "line", of scripts.
+    /// "report", "drawing" (of a "run"), "requirement", "line", of scripts, or "run" ("building").
     std::string_view owner;
     std::string_view name;
 };
@@ -89,6 +91,7 @@ class Extensions {
     [[nodiscard]] const std::vector<MakeJudge>& judges() const { return judges_; }
     [[nodiscard]] const std::vector<BridgeRow>& bridges() const { return bridges_; }
     [[nodiscard]] const std::vector<MakeRoleService>& roles() const { return roles_; }
+    [[nodiscard]] const BuildingRuns& buildings() const { return buildings_; }
 
   private:
     std::vector<std::string_view> names_;
@@ -104,6 +107,7 @@ class Extensions {
     std::vector<MakeJudge> judges_;
     std::vector<BridgeRow> bridges_;
     std::vector<MakeRoleService> roles_;
+    BuildingRuns buildings_;
 };
 
 }  // namespace ispace

@@ -5,8 +5,8 @@
 //
 // A building is a site of N rooms; a room alone is a site of one with an empty id, whose figures,
 // reports and messages are those of the room. storeys.h reads and writes buildings,
-// site_scene.h makes scenes of them, coupling.h says how they see each other, and site_coverage.h,
-// arranged_site.h and lib/engine/passage measure, arrange and run them.
+// site_scene.h makes scenes of them, coupling.h says how they see each other, site_coverage.h and
+// arranged_site.h measure and arrange them. An extension runs them (cli/building_runs.h).
 //
 // Lengths are metres, z is up. Storeys are sorted by the heights of their floors; equal rooms are
 // read once and shared by pointer, which later saves scenes, views and figures.

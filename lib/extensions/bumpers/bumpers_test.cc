@@ -10,13 +10,13 @@
 #include "base/error.h"
 #include "cli/common_options.h"
 #include "extensions/bumpers/bumper.h"
+#include "extensions/bumpers/bumpers_test.h"
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
 #include "server/server_state.h"
 #include "server/session.h"
 #include "sim/simulation.h"
-#include "support/test_building_run.h"
 
 namespace ispace::bumpers {
 namespace {
@@ -25,12 +25,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 Scene sceneOf(const std::string& records) {
-    static const bool added = [] {
-        addSceneSchemas(bumperSchemas());
-        addBumpers();
-        return true;
-    }();
-    EXPECT_TRUE(added);
+    testing::addBumpersOnce();
     return makeScene(
         readRecordText("#env 1\nispace id=room size=20,10\n" + records, "room.env", sceneSchemas()),
         nullptr, shippedDevices());
@@ -203,39 +198,6 @@ TEST(BumperService, IsForBumpers) {
     Simulation run(other, {}, {Clock::Kind::Step, 1}, {});
     const RunRoom second{"", &run};
     EXPECT_THROW(makeBumpers({&second, 1}, 1), FormatError);
-}
-
-/// In a building, the bumper is of a robot of its storey, and goes along with it.
-TEST(BumperService, GoesToOtherStoreys) {
-    for (const char* const of : {"ground/r", "r"}) {
-        static_cast<void>(sceneOf(""));
-        SiteScene building = testing::buildingOf(
-            std::string("robot id=ground/r at=6,4 accel=100 max_speed=3 mass=25\n"
-                        "bumper id=ground/b stiffness=10000 of=") +
-            of + '\n');
-        BuildingRun run(building, testing::optionsOf(milliseconds(20)));
-        std::vector<RunRoom> rooms;
-        for (const auto& room : run.rooms()) rooms.push_back({room.id, &*room.simulation});
-        const auto service = makeBumpers(rooms, 1);
-        ASSERT_NE(service, nullptr);
-        ASSERT_EQ(run.travel("ground/r", {{{1, {9, 6}}}}).refusal, "");
-        ASSERT_TRUE(testing::await(run, "ground/r", 60));
-        ASSERT_EQ(run.roomOf("ground/r"), 1U);
-        World& upper = run.rooms()[1].simulation->world();
-        const auto mover = upper.robotNamed("ground/r").value();
-        upper.command(mover, {.verb = Verb::Speed, .value = 1.2});
-        double force = 0;
-        for (int i = 0; i < 1000; ++i) {
-            testing::step(run);
-            service->stepped();
-            for (const RoomState& state : service->states()) {
-                EXPECT_EQ(state.id, "ground/b");
-                force = std::max(force, std::stod(state.value));
-            }
-        }
-        EXPECT_GT(force, 100) << of;
-        EXPECT_LE(force, 600.1) << of;
-    }
 }
 
 }  // namespace

@@ -125,7 +125,8 @@ class PathGoal final : public ObjectiveGroup {
         if (!input.isOneRoom()) {
             how.objective = std::make_shared<const PathObjective>(
                 way, zoneOfStorey(input.building, option, way.from),
-                zoneOfStorey(input.building, option, way.to), sitePassages(input.building));
+                zoneOfStorey(input.building, option, way.to),
+                passages::sitePassages(input.building));
             return;
         }
         for (const std::string& zone : {way.from, way.to})

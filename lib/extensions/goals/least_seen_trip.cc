@@ -42,9 +42,9 @@ class TripFinder {
             const std::string& id = building.document.storeys[at.storey].id;
             stops_.push_back({at.storey, at.zone, id + '/' + at.zone, {}});
         }
-        const std::vector<SitePassage> passages = sitePassages(building);
+        const std::vector<passages::SitePassage> passages = passages::sitePassages(building);
         for (std::size_t i = 0; i < passages.size(); ++i)
-            for (const SitePassage::Landing& landing : passages[i].landings)
+            for (const passages::SitePassage::Landing& landing : passages[i].landings)
                 stops_.push_back({landing.room, textOf(landing.floor), passages[i].id, i});
     }
 

@@ -19,7 +19,7 @@
 
 #include "extensions/goals/least_seen_path.h"
 #include "extensions/goals/objective_report.h"
-#include "passage/site_passages.h"
+#include "extensions/passages/site_passages.h"
 #include "site/site_coverage.h"
 #include "site/site_scene.h"
 

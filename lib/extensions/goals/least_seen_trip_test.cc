@@ -123,8 +123,9 @@ ArrangedBuilding guarded(const SiteScene& building, int count, Optimizer optimiz
     options.density = {2, 2, 4};
     options.cells = CellSize{0.2};
     options.search.optimizer = optimizer;
-    options.objective = std::make_shared<const PathObjective>(
-        PathChoice{"g/a", "u/b"}, StoreyZone{0, "a"}, StoreyZone{1, "b"}, sitePassages(building));
+    options.objective =
+        std::make_shared<const PathObjective>(PathChoice{"g/a", "u/b"}, StoreyZone{0, "a"},
+                                              StoreyZone{1, "b"}, passages::sitePassages(building));
     Record record(*sceneSchemas().find("laser"));
     record.set("range", Tuple{4});
     record.set("fov", fov);

@@ -67,7 +67,7 @@ std::unique_ptr<ObjectiveSearch> PathObjective::searchIn(const CoverageModel& mo
         add(from_, paths.from);
         add(to_, paths.to);
     }
-    for (const SitePassage& passage : passages_) {
+    for (const passages::SitePassage& passage : passages_) {
         CellSet& cells = paths.passages.emplace_back(all);
         for (const auto& [room, floor] : passage.landings)
             if (model.hasRoom(room))

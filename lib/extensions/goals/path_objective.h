@@ -28,7 +28,7 @@ class PathObjective final : public LayoutObjective {
     /// \param between for messages \param from,to zones of a room, each with its room
     /// \param passages between rooms
     PathObjective(PathChoice between, StoreyZone from, StoreyZone to,
-                  std::vector<SitePassage> passages = {})
+                  std::vector<passages::SitePassage> passages = {})
         : between_(std::move(between)),
           from_(std::move(from)),
           to_(std::move(to)),
@@ -44,7 +44,7 @@ class PathObjective final : public LayoutObjective {
   private:
     PathChoice between_;
     StoreyZone from_, to_;
-    std::vector<SitePassage> passages_;
+    std::vector<passages::SitePassage> passages_;
 };
 
 }  // namespace ispace::goals
