@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Impacts of robots on bumpers that measure forces: newtons, metres a second.
 #ifndef ISPACE_CLIENT_BUMPERS_H
 #define ISPACE_CLIENT_BUMPERS_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One connection to simrun: sends requests and sorts the server's lines into answers, scans and
+// events. The classes of roles are built on it; programs need it for requests that these lack.
 #ifndef ISPACE_CLIENT_CONNECTION_H
 #define ISPACE_CLIENT_CONNECTION_H
 

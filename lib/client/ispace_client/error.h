@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The exceptions of this library. Error is the base of all; Refused has the server's code.
+//
+//     try {
+//         Robot robot("127.0.0.1:7001", "r1");
+//     } catch (const Refused& refused) {
+//         if (refused.code() == 409) waitForTurn();  // another client drives it
+//     }
 #ifndef ISPACE_CLIENT_ERROR_H
 #define ISPACE_CLIENT_ERROR_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Weights on floors, beds and chairs: kilograms in sum, newtons by cell.
 #ifndef ISPACE_CLIENT_FLOOR_H
 #define ISPACE_CLIENT_FLOOR_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Pan-tilt heads under cameras and lasers: degrees, to the left and upwards.
 #ifndef ISPACE_CLIENT_HEADS_H
 #define ISPACE_CLIENT_HEADS_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Doors that open to tags, and their locks.
 #ifndef ISPACE_CLIENT_LOCKS_H
 #define ISPACE_CLIENT_LOCKS_H
 

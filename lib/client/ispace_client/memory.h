@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Texts at places of a room, and the tags that touch them. Metres and seconds.
 #ifndef ISPACE_CLIENT_MEMORY_H
 #define ISPACE_CLIENT_MEMORY_H
 

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lines of the protocol as words, numbers and fields, in any locale. Functions here do not touch
+// the connection.
+//
+//     const std::vector<std::string> ids = split("l1,l2", ',');  // "l1", "l2"
+//     const double range = numberOf("-");                        // infinity: no return
 #ifndef ISPACE_CLIENT_MESSAGE_H
 #define ISPACE_CLIENT_MESSAGE_H
 

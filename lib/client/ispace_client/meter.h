@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Plugs that switch and meter appliances: watts and kilowatt-hours.
 #ifndef ISPACE_CLIENT_METER_H
 #define ISPACE_CLIENT_METER_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Motes: nodes that report light and the motes that they hear.
 #ifndef ISPACE_CLIENT_MOTE_H
 #define ISPACE_CLIENT_MOTE_H
 

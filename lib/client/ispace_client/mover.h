@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Motions that robots and people share: speeds, ways and paths, each with its end. Metres, degrees
+// counter-clockwise, simulated seconds.
+//
+//     Robot robot("127.0.0.1:7001", "r1");
+//     const Motion motion = robot.forward(1.5);  // returns as soon as it runs
+//     if (!robot.wait(motion).done) robot.stop();
 #ifndef ISPACE_CLIENT_MOVER_H
 #define ISPACE_CLIENT_MOVER_H
 

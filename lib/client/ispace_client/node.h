@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Programs that run as nodes of a sensor network, with a clock each, over a line that delays and
+// loses messages.
 #ifndef ISPACE_CLIENT_NODE_H
 #define ISPACE_CLIENT_NODE_H
 

@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Passive infrared sensors.
+//
+//     Pir pir("127.0.0.1:7001", "hall-pir");
+//     pir.stream();
+//     while (!pir.next(60).motion) {
+//     }
 #ifndef ISPACE_CLIENT_PIR_H
 #define ISPACE_CLIENT_PIR_H
 

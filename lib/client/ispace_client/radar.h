@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Radars: movers by range, direction and radial speed, in the frame of the radar.
+//
+//     Radar radar("127.0.0.1:7001", "radar1");
+//     for (const Detection& one : radar.scan().movers) track(one.range, one.bearing, one.speed);
 #ifndef ISPACE_CLIENT_RADAR_H
 #define ISPACE_CLIENT_RADAR_H
 

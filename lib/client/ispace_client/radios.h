@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Texts between radios of robots, people and rooms.
 #ifndef ISPACE_CLIENT_RADIOS_H
 #define ISPACE_CLIENT_RADIOS_H
 

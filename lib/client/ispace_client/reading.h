@@ -1,4 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Readings of sensors as values. Metres, degrees and simulated seconds; an infinite range is no
+// return.
+//
+//     const Scan scan = LaserSensor("127.0.0.1:7001", "l1").scan();
+//     for (std::size_t i = 0; i < scan.ranges.size(); ++i)
+//         if (std::isfinite(scan.ranges[i])) draw(scan.angle_min + i * scan.step, scan.ranges[i]);
 #ifndef ISPACE_CLIENT_READING_H
 #define ISPACE_CLIENT_READING_H
 

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Robots: motions of a mover, and the sonars, bumpers, lasers and odometry on board.
+//
+//     Robot robot("127.0.0.1:7001", "r1");
+//     robot.wait(robot.forward(1.5));
+//     if (robot.status().stall) robot.wait(robot.left(90));
 #ifndef ISPACE_CLIENT_ROBOT_H
 #define ISPACE_CLIENT_ROBOT_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors of a room or on a robot: one class template, and a name for each kind.
 #ifndef ISPACE_CLIENT_SENSOR_H
 #define ISPACE_CLIENT_SENSOR_H
 

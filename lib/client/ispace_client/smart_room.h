@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Sensors of smart rooms: inertia, tags in the field of an RFID reader, light and sound.
 #ifndef ISPACE_CLIENT_SMART_ROOM_H
 #define ISPACE_CLIENT_SMART_ROOM_H
 

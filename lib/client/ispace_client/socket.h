@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// TCP with time limits, over sockets of POSIX: addresses, deadlines and a byte stream. Times are
+// wall time.
 #ifndef ISPACE_CLIENT_SOCKET_H
 #define ISPACE_CLIENT_SOCKET_H
 

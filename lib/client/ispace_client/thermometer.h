@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Thermometers.
+//
+//     const double celsius = Thermometer("127.0.0.1:7001", "t1").scan().celsius;
 #ifndef ISPACE_CLIENT_THERMOMETER_H
 #define ISPACE_CLIENT_THERMOMETER_H
 

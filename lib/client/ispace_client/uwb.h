@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Ultra-wideband anchors: ranges of tags, and the positions that all anchors find together. Metres.
+//
+//     for (const TagRange& one : Uwb("127.0.0.1:7001", "anchor1").scan().tags)
+//         if (one.is_located) draw(one.tag, one.x, one.y);
 #ifndef ISPACE_CLIENT_UWB_H
 #define ISPACE_CLIENT_UWB_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The world of a run: its clock, its events, and changes of its records.
 #ifndef ISPACE_CLIENT_WORLD_H
 #define ISPACE_CLIENT_WORLD_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Bumpers as points around the robot, for actions that avoid whatever range devices see.
 #ifndef SIM_ARIA_BUMPERS_H
 #define SIM_ARIA_BUMPERS_H
 

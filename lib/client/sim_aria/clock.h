@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The time of programs: one clock for the process, in milliseconds. Sleeps and time stamps go by
+// it; waits for sockets and conditions are wall time.
 #ifndef SIM_ARIA_CLOCK_H
 #define SIM_ARIA_CLOCK_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Files of lines that begin with a keyword, read by functions of the program.
 #ifndef SIM_ARIA_FILE_PARSER_H
 #define SIM_ARIA_FILE_PARSER_H
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The functors that programs name: ArFunctorC, ArRetFunctor1C, ArGlobalFunctor2 and their kin, over
+// the calls of functor.h. They are made of a member function (an object by pointer or reference,
+// the function, values for its parameters), of a constant one, or of a free function.
+//
+//     ArFunctor1C<Driver, int> turn(driver, &Driver::turn, 90);
+//     turn.invoke();  // driver.turn(90)
 #ifndef SIM_ARIA_FUNCTOR_KINDS_H
 #define SIM_ARIA_FUNCTOR_KINDS_H
 
 #include <utility>
 
 #include <sim_aria/functor.h>
-
-// Functors of member functions (an object by pointer or reference, the function, values for its
-// parameters), of constant ones, and of free functions.
 
 template <class T>
 class ArFunctorC : public sim_aria::Call0 {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Transforms and lines in the plane, in mm and degrees. Pure functions of their values.
 #ifndef SIM_ARIA_GEOMETRY_H
 #define SIM_ARIA_GEOMETRY_H
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Poses of a robot at times between packets, for readings that are measured then.
 #ifndef SIM_ARIA_INTERPOLATION_H
 #define SIM_ARIA_INTERPOLATION_H
 

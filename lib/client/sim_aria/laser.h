@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Lasers as range devices: the points of the newest scan, in the frame of the robot's odometry.
+// Millimetres and degrees. Their implementation is laser_scan.h.
 #ifndef SIM_ARIA_LASER_H
 #define SIM_ARIA_LASER_H
 

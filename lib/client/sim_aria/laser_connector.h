@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Connects a robot's lasers, with the words of ARIA's command lines.
 #ifndef SIM_ARIA_LASER_CONNECTOR_H
 #define SIM_ARIA_LASER_CONNECTOR_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Straight lines in scans: walls ahead, and the corner at which ArActionTriangleDriveTo docks.
+// Millimetres.
 #ifndef SIM_ARIA_LINE_FINDER_H
 #define SIM_ARIA_LINE_FINDER_H
 

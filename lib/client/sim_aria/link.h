@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to sim_aria: the dialogue of ArRobot with simrun. Turns metres and degrees a second into
+// the whole numbers of a Pioneer's packets.
 #ifndef SIM_ARIA_LINK_H
 #define SIM_ARIA_LINK_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to sim_aria: the speeds that ArRobot sends in each cycle, from goals of distance, heading
+// and speed. Millimetres, degrees, seconds; no thread and no connection.
 #ifndef SIM_ARIA_MOTION_H
 #define SIM_ARIA_MOTION_H
 

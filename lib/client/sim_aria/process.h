@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Private to sim_aria: the state of the process, and its end by a signal or a return from main.
 #ifndef SIM_ARIA_PROCESS_H
 #define SIM_ARIA_PROCESS_H
 

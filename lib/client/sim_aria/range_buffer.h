@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Recent points of a range device, for the searches of actions: the nearest in a box or a sector.
 #ifndef SIM_ARIA_RANGE_BUFFER_H
 #define SIM_ARIA_RANGE_BUFFER_H
 

@@ -1,4 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The robot of a program: connection, cycle, motion, tasks and actions. Its implementation is
+// robot_cycle.h and robot_parts.h.
+//
+//     ArRobot robot;
+//     ArSimpleConnector connector(&argc, argv);
+//     if (!connector.connectRobot(&robot)) return 1;
+//     robot.runAsync(true);
+//     robot.lock();
+//     robot.enableMotors();
+//     robot.move(1500);  // mm
+//     robot.unlock();
 #ifndef SIM_ARIA_ROBOT_H
 #define SIM_ARIA_ROBOT_H
 

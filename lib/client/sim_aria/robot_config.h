@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of a robot's firmware, as programs request them by the packet CONFIG.
 #ifndef SIM_ARIA_ROBOT_CONFIG_H
 #define SIM_ARIA_ROBOT_CONFIG_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Figures of a robot: radius, bumpers, sonars, and lasers with their poses. Millimetres and
+// degrees.
 #ifndef SIM_ARIA_ROBOT_PARAMS_H
 #define SIM_ARIA_ROBOT_PARAMS_H
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The getters of ArRobot, which lie on the newest packet: pose, speeds, sonars, bumpers, battery.
+// Hold the robot's lock around them.
 #ifndef SIM_ARIA_ROBOT_STATE_H
 #define SIM_ARIA_ROBOT_STATE_H
 

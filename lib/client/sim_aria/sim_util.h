@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The true pose of a robot, which simulators know and real robots do not: to judge odometry, or to
+// set a robot elsewhere.
 #ifndef SIM_ARIA_SIM_UTIL_H
 #define SIM_ARIA_SIM_UTIL_H
 

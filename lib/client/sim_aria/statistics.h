@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Counts and figures for programs that judge their own runs: sectors that a turn has seen, and the
+// root of a mean square.
 #ifndef SIM_ARIA_STATISTICS_H
 #define SIM_ARIA_STATISTICS_H
 

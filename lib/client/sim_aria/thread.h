@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Locks, conditions and threads under ARIA's names, over those of the C++ library.
 #ifndef SIM_ARIA_THREAD_H
 #define SIM_ARIA_THREAD_H
 

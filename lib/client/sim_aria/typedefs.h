@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Small types of ARIA: integers by their size, ends of lists, and the word before exported classes.
 #ifndef SIM_ARIA_TYPEDEFS_H
 #define SIM_ARIA_TYPEDEFS_H
 
