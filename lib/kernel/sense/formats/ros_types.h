@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The types of ROS 2 that are written and read here.
+// The types of ROS 2 that are written and read here. Constant tables, thread-safe.
+//
+//     const auto type = rosTypeNamed("sensor_msgs/LaserScan");  // of ROS 1 or 2
+//     const std::string text = rosDefinition(*type);            // as MCAP files hold it
 #pragma once
 
 #include <cstddef>
