@@ -2,6 +2,8 @@
 // Calibrations of cameras from files of ROS and OpenCV. Untrusted: a file has at most 1 MiB, 1000
 // keys a map and 14 coefficients. Skew and more coefficients than a lens of ours has are errors,
 // never ignored, since a picture with a wrong lens looks right.
+//
+//     applyCalibration(camera, readAll("left.yaml"), "left.yaml");  // a `camera` record
 #pragma once
 
 #include <string>

@@ -2,6 +2,10 @@
 // The one rule for parts of a file that an importer cannot read but that may be walls: those as
 // large as walls, in or beside the rooms that are kept, are reported in a warning, so that a check
 // fails, whatever else encloses a room.
+//
+//     std::vector<UnreadThing> unread;
+//     unread.push_back({.kind = "3DSOLID", .layer = "A-WALL", .line = 812, .extent = box});
+//     warnOfUnread(unread, rooms, "explode them to lines first", out);
 #pragma once
 
 #include <optional>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Coverage over the number of sensors, with bounds on the best there can be, as table, CSV and
-// chart. Shares are fractions in CSV and per cent elsewhere.
+// chart. Shares are fractions in CSV and per cent elsewhere. Pure functions; equal points give
+// equal bytes.
+//
+//     writeAll("curve.svg", curveFile(points, "svg"));
 #pragma once
 
 #include <string>

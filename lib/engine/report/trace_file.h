@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The poses that a search of arrange has tried, as a file that maps read.
+// The poses that a search of arrange has tried, as a file that maps read. O(bytes).
+//
+//     const TraceFile trace = readTrace(readAll("tried.jsonl"), "tried.jsonl");
+//     for (const TriedPose& tried : trace.poses) mark(tried.pose);
 #pragma once
 
 #include <string>

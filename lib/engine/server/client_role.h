@@ -6,6 +6,10 @@
 //
 // A service lives as long as its run; a client's role lives from the request that takes it to the
 // end of the connection, so the destructor of ClientRole gives the id back.
+//
+//     NODE n1         -> RoleService::take("n1", answer), of the service whose verb() is NODE
+//     SEND hello      -> ClientRole::request({"SEND", "hello"})
+//     closed          -> ~ClientRole()
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // People at random places of a site: how many stand on each storey, and by which seed.
+// Deterministic.
+//
+//     const auto people = spreadOverStoreys(building, 0, 30);  // in sum 30
 #pragma once
 
 #include <cstddef>

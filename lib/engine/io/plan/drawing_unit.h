@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The unit of a drawing by its contents: leaves of doors are 0.6 m to 1.2 m wide, walls 0.08 m to
 // 0.5 m thick, and plans 2 m to 500 m wide in the right unit.
+//
+//     const auto ranking = rankedUnits(read, work, nullptr, usualUnits());
+//     const UnitEvidence* const unit = decidedUnit(ranking, nullptr);
+//     if (unit == nullptr) throw FormatError({name, 0, 0, "no unit" + scaleHint(ranking)});
 #pragma once
 
 #include <cstddef>

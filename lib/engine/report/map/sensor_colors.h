@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colours of sensors, the same in all maps and tables of a report.
+// Colours of sensors, the same in all maps and tables of a report. Deterministic: the order of the
+// sensors decides.
+//
+//     const std::vector<Color> colors = sensorColors(coverage);
+//     fill(coverage.sensors[2], colors[2]);
 #pragma once
 
 #include <cstddef>
