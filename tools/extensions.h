@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The one list of extensions, which the configuration of the build chooses.
 #pragma once
 
 #include "cli/extension.h"

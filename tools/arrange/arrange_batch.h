@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parts and results of arrange: --shard, --merge and --resume.
 #pragma once
 
 #include <memory>

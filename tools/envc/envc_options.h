@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The command line of envc, and the products that it writes of a room.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Parts and results of scan: --shard, --merge and --resume.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of buildings: several rooms, passages between them.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The command line of simrun: the core's options, and those of its extensions.
 #pragma once
 
 #include <memory>

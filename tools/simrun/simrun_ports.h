@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The ports of a run: bridges of extensions, and the line that tells clients where to connect.
 #pragma once
 
 #include <string>

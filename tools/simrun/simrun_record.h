@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Options of the form of a record.
 #pragma once
 
 #include "cli/command_line.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The course of a run: reads the site, opens its worlds, serves clients until the end, writes
+// products.
 #pragma once
 
 #include <memory>
