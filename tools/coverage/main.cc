@@ -66,8 +66,7 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
                        SiteResults& results) {
     const ReportGroup* const form = options.reports->of(options.report);
     const SiteCoverage& coverage = results.coverage;
-    if (form == nullptr)
-        return siteCoverageJson(input.building, coverage, results.parts());
+    if (form == nullptr) return siteCoverageJson(input.building, coverage, results.parts());
     SiteReport report{input.building, coverage, "", options.history_line};
     if (input.environment_operand != "-") report.name = baseName(input.environment_operand);
     const auto add = [&report](const std::string& phrase, const Verdict& verdict) {
