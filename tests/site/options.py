@@ -60,7 +60,6 @@ BEFORE = {
     ("scan", "--merge"): "scan room.env lay.3dm --select l* --frames 4 --shard 1/2 --to jsonl -o a.part"
     " && scan room.env lay.3dm --select l* --frames 4 --shard 2/2 --to jsonl -o b.part",
     ("scan", "--run"): f"simrun {RUN} --record rec --record-frames 1",
-    ("coverage", "--run"): RECORD,
     ("coverage", "--trace"): f"arrange room.env {COARSE} --sensor laser:1 --trace trace.csv -o out.3dm",
     ("simrun", "--replay"): RECORD,
     ("simrun", "--from"): RECORD,
@@ -263,7 +262,6 @@ OPTIONS = {
         "--require": "--require 99%",
         "--junit": "--junit verdicts.xml --require 99%",
         "--compare": "--compare other.3dm",
-        "--run": "--run rec",
         "--to": "--to svg -o out",
         "--width": "-o out.png --width 300",
         "--color": "-o out.svg --color sensor",
