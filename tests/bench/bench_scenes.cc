@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench_scenes.h"
-#include "support/test_dxf.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "support/test_paths.h"
 
 #include <cmath>
@@ -155,17 +155,17 @@ Building drawnCubicles(std::size_t lines, bool doors) {
     const auto cubicles = static_cast<double>(lines) / (doors ? 8 : 4);
     const int count = static_cast<int>(std::sqrt(cubicles));
     const double width = count * kSide;
-    std::string entities = rectangle(layer, 0, 0, width, width);
+    std::string entities = cad::rectangle(layer, 0, 0, width, width);
     Building out{{}, 4, width * width};
     const auto add = [&](Point2 from, double heading) {
         const Vec2 along = unitVector(Angle::degrees(heading));
         const Point2 hinge = from + kHinge * along, gap_end = hinge + kGap * along;
         const Point2 to = from + kSide * along, open = hinge + kGap * perpendicular(along);
-        entities += line(layer, from.x, from.y, hinge.x, hinge.y) +
-                    line(layer, gap_end.x, gap_end.y, to.x, to.y);
+        entities += cad::line(layer, from.x, from.y, hinge.x, hinge.y) +
+                    cad::line(layer, gap_end.x, gap_end.y, to.x, to.y);
         if (doors)
-            entities += line(layer, hinge.x, hinge.y, open.x, open.y) +
-                        arc(layer, hinge.x, hinge.y, kGap, heading, heading + 90);
+            entities += cad::line(layer, hinge.x, hinge.y, open.x, open.y) +
+                        cad::arc(layer, hinge.x, hinge.y, kGap, heading, heading + 90);
         out.walls += doors ? 4 : 2;
     };
     for (int row = 0; row < count; ++row)
@@ -174,7 +174,7 @@ Building drawnCubicles(std::size_t lines, bool doors) {
             if (row > 0) add(corner, 0);
             if (column > 0) add(corner, 90);
         }
-    out.text = drawing(entities, "", 6);
+    out.text = cad::drawing(entities, "", 6);
     return out;
 }
 

@@ -34,8 +34,8 @@ SOURCE = os.path.dirname(os.path.dirname(HERE))
 PATIENCE = 300  # seconds for one block, on a busy machine
 TYPING = 0.5  # seconds for a line of a session: scans ten times a second then hold the answered state
 MARKS = ("not run", "file", "printed by", "serves", "session")
-INPUTS = {"map.yaml": "map.yaml", "map.pgm": "map.pgm", "scan.jpg": "pictures/room.jpg",
-          "house.ifc": "ifc/cabin-2x3-mm.ifc"}  # from tests/data
+INPUTS = {"map.yaml": "tests/data/map.yaml", "map.pgm": "tests/data/map.pgm", "scan.jpg": "tests/data/pictures/room.jpg",
+          "house.ifc": "lib/extensions/ifc/golden/inputs/ifc/cabin-2x3-mm.ifc"}
 ESCAPES = {r"\-": "-", r"\e": "\\", r"\(aq": "'", r"\(dq": '"', r"\&": ""}
 
 
@@ -255,7 +255,7 @@ def furnish(folder):
     for origin in (os.path.join(SOURCE, "share", "scenes"), os.path.join(HERE, "inputs")):
         shutil.copytree(origin, folder, dirs_exist_ok=True)
     for name, origin in INPUTS.items():
-        shutil.copy(os.path.join(SOURCE, "tests", "data", origin), os.path.join(folder, name))
+        shutil.copy(os.path.join(SOURCE, origin), os.path.join(folder, name))
     for name in ("lib", "share"):
         os.symlink(os.path.join(SOURCE, name), os.path.join(folder, name))
     os.environ["PYTHONPATH"] = os.path.join(SOURCE, "lib", "client", "python")

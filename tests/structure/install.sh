@@ -45,7 +45,7 @@ coverage room.glb best.3dm -o map.png
 [ -s map.png ] || fail "no map"
 # The module that decodes pictures lies beside the programs.
 envc "$data/pictures/room.jpg" --resolution 0.05 --info | has 'indoor area' || fail "no JPEG is read"
-envc "$data/ifc/cabin-2x3-mm.ifc" --info | has 'indoor area' || fail "no IFC is read"
+envc "$source_dir/lib/extensions/ifc/golden/inputs/ifc/cabin-2x3-mm.ifc" --info | has 'indoor area' || fail "no IFC is read"
 # A scene with a mesh beside it.
 envc "$share/scenes/catalogue.env" -o catalogue.glb
 # ispace-sweep finds its modules, and the drawings of the experiments.

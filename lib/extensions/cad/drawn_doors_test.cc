@@ -3,8 +3,8 @@
 #include <numbers>
 
 #include "extensions/cad/cad.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "io/plan/line_plan.h"
-#include "support/test_dxf.h"
 #include "support/test_import.h"
 #include "support/test_work.h"
 

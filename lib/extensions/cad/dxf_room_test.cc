@@ -2,7 +2,7 @@
 // Drawings that writeDxf() made, read back.
 #include "extensions/cad/cad.h"
 #include "extensions/cad/dxf_plan.h"
-#include "support/test_dxf.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "support/test_import.h"
 #include "support/test_scenes.h"
 

@@ -4,8 +4,8 @@
 
 #include "extensions/cad/cad.h"
 #include "extensions/cad/curves.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "geom/predicates.h"
-#include "support/test_dxf.h"
 #include "support/test_import.h"
 
 namespace ispace::cad {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "extensions/cad/dxf_drawing.h"
-#include "support/test_dxf.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "support/test_import.h"
 
 namespace ispace::cad {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "extensions/cad/cad.h"
-#include "support/test_dxf.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "support/test_import.h"
 
 namespace ispace::cad {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "extensions/cad/cad.h"
-#include "support/test_dxf.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "support/test_import.h"
 
 namespace ispace::cad {

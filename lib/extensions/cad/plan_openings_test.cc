@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "extensions/cad/cad.h"
-#include "support/test_dxf.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "support/test_import.h"
 #include "support/test_work.h"
 

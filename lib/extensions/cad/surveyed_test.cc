@@ -6,7 +6,7 @@
 
 #include "base/number.h"
 #include "extensions/cad/cad.h"
-#include "support/test_dxf.h"
+#include "extensions/cad/tests/test_dxf.h"
 #include "support/test_import.h"
 
 namespace ispace::cad {

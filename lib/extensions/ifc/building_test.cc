@@ -13,9 +13,9 @@
 #include "extensions/ifc/reader/building_limits.h"
 #include "extensions/ifc/reader/ifc_mesh.h"
 #include "extensions/ifc/storey_plan.h"
+#include "extensions/ifc/tests/test_ifc.h"
 #include "geom/arrangement.h"
 #include "support/test_damage.h"
-#include "support/test_ifc.h"
 #include "support/test_work.h"
 
 namespace ispace::ifc {

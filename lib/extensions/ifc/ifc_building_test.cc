@@ -8,12 +8,12 @@
 #include "base/file.h"
 #include "extensions/ifc/ifc.h"
 #include "extensions/ifc/ifc_test.h"
+#include "extensions/ifc/tests/test_ifc.h"
 #include "record/text.h"
 #include "site/chosen_storeys.h"
 #include "site/site_scene.h"
 #include "site/storeys.h"
 #include "support/test_folder.h"
-#include "support/test_ifc.h"
 #include "support/test_import.h"
 
 namespace ispace::ifc {

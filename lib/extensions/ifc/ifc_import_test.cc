@@ -6,8 +6,8 @@
 
 #include "extensions/ifc/ifc.h"
 #include "extensions/ifc/storey_plan.h"
+#include "extensions/ifc/tests/test_ifc.h"
 #include "geom/arrangement.h"
-#include "support/test_ifc.h"
 #include "support/test_import.h"
 
 namespace ispace::ifc {

@@ -13,7 +13,7 @@
 #include "extensions/ifc/ifc_zip.h"
 #include "extensions/ifc/reader/building.h"
 #include "extensions/ifc/storey_plan.h"
-#include "support/test_ifc_house.h"
+#include "extensions/ifc/tests/test_ifc_house.h"
 #include "support/test_import.h"
 #include "support/test_work.h"
 

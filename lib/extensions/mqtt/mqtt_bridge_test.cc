@@ -19,7 +19,7 @@
 #include "base/number.h"
 #include "extensions/mqtt/mqtt_survey.h"
 #include "extensions/mqtt/mqtt_topics.h"
-#include "support/memory_broker.h"
+#include "extensions/mqtt/tests/memory_broker.h"
 #include "support/test_source.h"
 #include "support/test_talk.h"
 

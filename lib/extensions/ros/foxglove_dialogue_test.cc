@@ -7,7 +7,7 @@
 
 #include "base/file.h"
 #include "extensions/ros/ros_text.h"
-#include "support/ros_talk.h"
+#include "extensions/ros/tests/ros_talk.h"
 
 namespace ispace::ros {
 namespace {

@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "extensions/ros/tests/fake_participant.h"
 #include "sense/formats/cdr.h"
-#include "support/fake_participant.h"
 #include "support/test_world.h"
 
 namespace ispace::ros {

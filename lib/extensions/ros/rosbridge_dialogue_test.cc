@@ -9,7 +9,7 @@
 #include <string>
 
 #include "base/message.h"
-#include "support/ros_talk.h"
+#include "extensions/ros/tests/ros_talk.h"
 
 namespace ispace::ros {
 namespace {

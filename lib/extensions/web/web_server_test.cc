@@ -6,8 +6,8 @@
 #include <list>
 #include <system_error>
 
+#include "extensions/web/tests/test_web.h"
 #include "support/test_client.h"
-#include "support/test_web.h"
 
 namespace ispace::web {
 namespace {

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-#include "support/test_laser_host.h"
+#include "extensions/wire/tests/test_laser_host.h"
 
 namespace ispace::wire {
 namespace {

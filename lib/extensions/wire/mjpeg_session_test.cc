@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/test_host.h"
+#include "extensions/wire/tests/test_host.h"
 
 namespace ispace::wire {
 

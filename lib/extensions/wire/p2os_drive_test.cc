@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "support/test_pioneer.h"
+#include "extensions/wire/tests/test_pioneer.h"
 
 namespace ispace::wire {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "support/test_pioneer.h"
+#include "extensions/wire/tests/test_pioneer.h"
 
 namespace ispace::wire {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "extensions/wire/p2os_session.h"
-#include "support/test_host.h"
+#include "extensions/wire/tests/test_host.h"
 
 namespace ispace::wire {
 

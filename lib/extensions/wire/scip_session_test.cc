@@ -8,7 +8,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "support/test_laser_host.h"
+#include "extensions/wire/tests/test_laser_host.h"
 
 namespace ispace::wire {
 namespace {

@@ -84,7 +84,7 @@ expect_again() {
 expect_again deep.env
 grep -q '"indoor_area":30.19' want.json || fail "the door does not join the rooms: $(cat want.json)"
 envc again.dxf --to env | has '^door .* size=0.9,0.7 ' || fail "a door lost its depth: $(envc again.dxf --to env)"
-for building in "$data"/ifc/[ch]*.ifc ${ISPACE_TEST_DATA:+"$ISPACE_TEST_DATA"/strangers/ifc/*.ifc}; do
+for building in "$source_dir"/lib/extensions/ifc/golden/inputs/ifc/[ch]*.ifc ${ISPACE_TEST_DATA:+"$ISPACE_TEST_DATA"/strangers/ifc/*.ifc}; do
     case $building in
     *duplex*) storey=(--storey level-1) ;;
     *fzk*) storey=(--storey erdgeschoss) ;;

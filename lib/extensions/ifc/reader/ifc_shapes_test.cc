@@ -10,8 +10,8 @@
 
 #include "extensions/ifc/reader/ifc_sections.h"
 #include "extensions/ifc/storey_plan.h"
+#include "extensions/ifc/tests/test_ifc.h"
 #include "geom/arrangement.h"
-#include "support/test_ifc.h"
 #include "support/test_work.h"
 
 namespace ispace::ifc {

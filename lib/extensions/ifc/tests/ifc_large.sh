@@ -4,7 +4,7 @@
 # a damaged one is an error, and a loop in a placement costs no more.
 . "$ISPACE_SOURCE_DIR/tests/pipelines/common.sh"
 
-python3 - "$data/ifc/cabin-2x3-mm.ifc" <<'PY'
+python3 - "$source_dir/lib/extensions/ifc/golden/inputs/ifc/cabin-2x3-mm.ifc" <<'PY'
 import re, sys
 text = open(sys.argv[1]).read()
 head, rest = text.split('DATA;\n')

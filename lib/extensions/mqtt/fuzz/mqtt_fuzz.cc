@@ -7,10 +7,10 @@
 #include <string_view>
 
 #include "extensions/mqtt/mqtt_bridge.h"
+#include "extensions/mqtt/tests/memory_broker.h"
 #include "fuzz.h"
 #include "served_room.h"
 #include "server/session.h"
-#include "support/memory_broker.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ServedRoom room;

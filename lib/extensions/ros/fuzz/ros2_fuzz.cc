@@ -7,9 +7,9 @@
 #include <string>
 
 #include "extensions/ros/ros_node.h"
+#include "extensions/ros/tests/fake_participant.h"
 #include "fuzz.h"
 #include "served_room.h"
-#include "support/fake_participant.h"
 
 void ispace::fuzz::tryInput(std::string_view bytes) {
     ServedRoom room;

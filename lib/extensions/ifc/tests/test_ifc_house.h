@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "base/number.h"
+#include "extensions/ifc/tests/test_ifc.h"
 #include "geom/point.h"
-#include "support/test_ifc.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 /// A house with rooms of 4 m x 5 m and 3.9 m x 5 m behind walls of 0.3 m, an inner wall of 0.1 m,
 /// doors of 0.9 m (front, inner) and windows of 1.5 m and 1.2 m with sills of 0.9 m.
@@ -228,4 +228,4 @@ class IfcHouseText {
 
 inline std::string ifcHouse(const IfcHouse& house) { return IfcHouseText(house).text(); }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

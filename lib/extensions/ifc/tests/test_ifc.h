@@ -7,10 +7,10 @@
 #include "base/file.h"
 #include "support/test_paths.h"
 
-namespace ispace {
+namespace ispace::ifc {
 
 inline std::string ifcPath(const std::string& name) {
-    return testing::sourcePath("tests/data/ifc/" + name);
+    return testing::sourcePath("lib/extensions/ifc/golden/inputs/ifc/" + name);
 }
 inline std::string ifcBytes(const std::string& name) { return readAll(ifcPath(name)); }
 
@@ -23,4 +23,4 @@ inline std::string ifcWith(const std::string& data) {
            data + "ENDSEC;\nEND-ISO-10303-21;\n";
 }
 
-}  // namespace ispace
+}  // namespace ispace::ifc

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "extensions/wire/p2os_session.h"
-#include "support/test_host.h"
+#include "extensions/wire/tests/test_host.h"
 
 namespace ispace::testing {
 

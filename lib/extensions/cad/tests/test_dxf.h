@@ -8,7 +8,7 @@
 
 #include "base/number.h"
 
-namespace ispace {
+namespace ispace::cad {
 
 inline std::string group(int code, const std::string& value) {
     return "  " + std::to_string(code) + '\n' + value + '\n';
@@ -107,4 +107,4 @@ inline std::string drawing(const std::string& entities, const std::string& block
     return text + section("ENTITIES", entities) + group(0, "EOF");
 }
 
-}  // namespace ispace
+}  // namespace ispace::cad
