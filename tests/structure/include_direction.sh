@@ -8,7 +8,7 @@ root=${1:-$(cd "$(dirname "$0")/../.." && pwd)}
 
 # Prints one line per violation. $1: a tree with lib/ and tools/.
 violations() {
-    (cd "$1" && find lib tools -not -path 'lib/extensions/*/tests/*' \( -name '*.h' -o -name '*.cc' \) | LC_ALL=C sort | xargs awk '
+    (cd "$1" && find lib tools -not -path 'lib/extensions/*/tests/*' -not -path 'lib/extensions/*/bench/*' \( -name '*.h' -o -name '*.cc' \) | LC_ALL=C sort | xargs awk '
     function layer(folder, below,    names, i, n) {
         known[folder] = 1
         n = split(below, names, " ")
