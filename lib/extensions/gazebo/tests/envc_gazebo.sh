@@ -3,6 +3,7 @@
 # Worlds for Gazebo, read back by libsdformat, and worlds of others, where it has to see the same poses
 # as envc does. Sensors as URDF, read back by urdfdom.
 . "$ISPACE_SOURCE_DIR/tests/pipelines/common.sh"
+inputs=$source_dir/lib/extensions/gazebo/golden/inputs
 
 cat >room.env <<'END'
 #env 1
@@ -156,8 +157,8 @@ expect_error 2 envc room.env --add 'mesh file=wedge.obj' --to sdf
 grep -q 'name it with -o FILE.sdf' err || fail "no hint: $(cat err)"
 
 # A world of others: where libsdformat sees boxes and cylinders, envc does.
-cp -r "$data"/{cabinet,models} .
-grep -v 'model://sun' "$data/gazebo.sdf" >world.sdf
+cp -r "$inputs"/{cabinet,models} .
+grep -v 'model://sun' "$inputs/gazebo.sdf" >world.sdf
 sdf_facts world.sdf "$PWD" "$PWD/models"
 envc world.sdf --to env >world.env 2>/dev/null
 # seen MODEL SHAPE KEYWORD ID HEIGHT: the middle of MODEL's shape, HEIGHT high, is that of the record.
