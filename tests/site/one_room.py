@@ -161,6 +161,9 @@ def main():
     jobs, faults, exempt = [], 0, 0
     for tool in TOOLS:
         known = rows.COMMON | rows.OPTIONS[tool]
+        for _, option, extension in (one for one in rows.MISPLACED if one[0] == tool):
+            print(f"{tool} {option}: its row belongs to lib/extensions/{extension}/site_rows.py")
+            faults += 1
         for option in sorted(listed(tools, tool)):
             if arguments.only and arguments.only not in (tool, f"{tool}:{option}"):
                 continue

@@ -314,6 +314,13 @@ OPTIONS = {
 }
 
 EXTENSIONS = pathlib.Path(__file__).resolve().parent.parent.parent / "lib/extensions"
+# Options that an extension offers, and that have their row here.
+MISPLACED = [
+    (*line.split(), path.parent.name)
+    for path in sorted(EXTENSIONS.glob("*/offers.txt"))
+    for line in path.read_text().splitlines()
+    if line.split()[0] in OPTIONS and line.split()[1] in OPTIONS[line.split()[0]]
+]
 for path in sorted(EXTENSIONS.glob("*/site_rows.py")):
     rows = runpy.run_path(str(path))
     FILES |= rows.get("FILES", {})
