@@ -296,7 +296,7 @@ void warnOfNothing(const ArrangeToolOptions& options, const ArrangeWork& work,
 
 void warnOfSearch(const ArrangeToolOptions& options, const ArrangeWork& work) {
     for (const std::string& note : options.groups->notes(work.how))
-        tell(options.common, "arrange", note);
+        report(options.common, "arrange", note);
     if (const std::string hint = hintAlongWalls(work); !hint.empty())
         warn(options.common, "arrange", hint);
     for (std::size_t i = 0; i < work.input.rooms().size(); ++i)

@@ -80,15 +80,15 @@ void report(const ArrangeToolOptions& options, const ArrangeWork& work,
         writeLines("arrange", reportText(work, arrangement) +
                                   alternativesText(options.common.output, arrangement));
     for (const ArrangeFindings::Line& line : findings.lines)
-        tell(options.common, "arrange", line.text);
+        report(options.common, "arrange", line.text);
     if (!options.common.quiet)
         for (const ArrangeFindings::Line& line : figuresOf(options, work, arrangement).lines)
-            tell(options.common, "arrange", line.text);
+            report(options.common, "arrange", line.text);
     const auto asked = static_cast<std::size_t>(work.how.alternatives);
     if (const std::size_t count = arrangement.alternatives.size(); count < asked)
-        tell(options.common, "arrange",
-             std::to_string(count) + " of " + std::to_string(asked) +
-                 " alternatives were found: the candidates have no more layouts that differ");
+        report(options.common, "arrange",
+               std::to_string(count) + " of " + std::to_string(asked) +
+                   " alternatives were found: the candidates have no more layouts that differ");
     logInfo(options.common, "arrange",
             "total effective area " + formatFixed(arrangement.area, 2) + " m2, cost " +
                 formatDouble(arrangement.cost));
@@ -107,7 +107,7 @@ void checkAll(const ArrangeToolOptions& options, const ArrangeWork& work,
 /// Reports that a signal left no product, and ends by it.
 [[noreturn]] void endWithNothing(const ArrangeToolOptions& options, int signal,
                                  const std::string& text) {
-    tell(options.common, "arrange", text);
+    report(options.common, "arrange", text);
     endBySignal(signal);
 }
 

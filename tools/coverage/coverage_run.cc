@@ -96,16 +96,16 @@ std::optional<Diagnostic> receiverFinding(const Scene& scene) {
 }
 
 /// Tells if the cells of a room are larger than usual by default.
-void tellLargeCells(const CoverageToolOptions& options, const SiteInput& input,
-                    const SiteCoverage& coverage) {
+void reportLargeCells(const CoverageToolOptions& options, const SiteInput& input,
+                      const SiteCoverage& coverage) {
     if (!std::holds_alternative<RoomCells>(options.measure.cells)) return;
     for (std::size_t i = 0; i < coverage.storeys.size(); ++i) {
         const Grid& grid = coverage.storeys[i].report.grid;
         const double edge = roundSignificant(grid.limits.width() / grid.columns);
         if (edge <= kRoomCell) continue;
-        tell(options.common, "coverage",
-             storeyOf(input, i).prefix() + "the room is large: cells are " + formatDouble(edge) +
-                 " m instead of " + formatDouble(kRoomCell) + " m (--cell M makes them smaller)");
+        report(options.common, "coverage",
+               storeyOf(input, i).prefix() + "the room is large: cells are " + formatDouble(edge) +
+                   " m instead of " + formatDouble(kRoomCell) + " m (--cell M makes them smaller)");
     }
 }
 
@@ -152,7 +152,7 @@ void measure(const CoverageToolOptions& options, const SiteInput& input,
     if (by_shades)
         for (std::size_t i = 0; i < coverage.storeys.size(); ++i)
             addDepthShades(coverage.storeys[i], *coverage.floors[i], redundancyScale(coverage));
-    tellLargeCells(options, input, coverage);
+    reportLargeCells(options, input, coverage);
 }
 
 std::vector<TriedPose> readTried(const CoverageToolOptions& options, const SiteInput& input) {

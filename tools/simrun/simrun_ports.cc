@@ -15,12 +15,12 @@ namespace ispace {
 void servePorts(Server& server, Simulation& simulation, const SimrunOptions& options,
                 const std::string& title, std::vector<std::string> replayed) {
     for (const std::string& note : server.serveRoles(extensions().roles()))
-        tell(options.common, "simrun", note);
+        report(options.common, "simrun", note);
     options.bridges->open(server, simulation,
                           {options.common, title, std::move(replayed), options.max_recorded});
 }
 
-void tellLosses(const Server& server, const SimrunOptions& options) {
+void reportLosses(const Server& server, const SimrunOptions& options) {
     const ReaderLosses losses = server.readerLosses();
     std::string what;
     if (losses.readings > 0) what = std::to_string(losses.readings) + " readings of streams";
@@ -30,8 +30,8 @@ void tellLosses(const Server& server, const SimrunOptions& options) {
     if (what.empty()) return;
     const bool may_wait =
         options.clock.kind != Clock::Kind::Real && !options.limits.waits_for_readers;
-    tell(options.common, "simrun",
-         "slow readers lost " + what + (may_wait ? " (--wait-for-readers keeps them)" : ""));
+    report(options.common, "simrun",
+           "slow readers lost " + what + (may_wait ? " (--wait-for-readers keeps them)" : ""));
 }
 
 void announce(const Server& server, const SimrunOptions& options) {

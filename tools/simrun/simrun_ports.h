@@ -21,6 +21,6 @@ void servePorts(Server& server, Simulation& simulation, const SimrunOptions& opt
 void announce(const Server& server, const SimrunOptions& options);
 
 /// Says after the run how much slow readers have lost, if any.
-void tellLosses(const Server& server, const SimrunOptions& options);
+void reportLosses(const Server& server, const SimrunOptions& options);
 
 }  // namespace ispace

@@ -253,12 +253,12 @@ void conclude(const RunJudge& judge, const SimrunOptions& options, const std::st
     junit.write(baseName(environment), cases);
     if (const std::string unmet = unmetText(verdicts); !unmet.empty()) throw UnmetError(unmet);
     if (verdicts.size() == 1)
-        tell(options.common, "simrun",
-             "met at t=" + formatMilliseconds(verdicts.front().time) + ": " +
-                 printable(verdicts.front().expectation));
+        report(options.common, "simrun",
+               "met at t=" + formatMilliseconds(verdicts.front().time) + ": " +
+                   printable(verdicts.front().expectation));
     else if (!verdicts.empty())
-        tell(options.common, "simrun",
-             "all " + std::to_string(verdicts.size()) + " expectations are met");
+        report(options.common, "simrun",
+               "all " + std::to_string(verdicts.size()) + " expectations are met");
 }
 
 /// Returns the scene as one self-contained file for the folder of the record.
@@ -375,7 +375,7 @@ class CollisionLog {
     CollisionLog(const World& world, const CommonOptions& options)
         : world_(&world), options_(&options) {}
     /// Reports the collisions of the world's last step.
-    void tell();
+    void report();
 
   private:
     struct Bump {
@@ -395,7 +395,7 @@ class UnreachedLog {
     /// Subscribes to the events.
     UnreachedLog(Simulation& simulation, const CommonOptions& options);
     /// Reports the events since the last call.
-    void tell();
+    void report();
 
   private:
     Simulation* simulation_;
@@ -410,7 +410,7 @@ class LagLog {
     LagLog(const Simulation& simulation, const CommonOptions& options)
         : simulation_(&simulation), options_(&options) {}
     /// Reads the clock after a step.
-    void tell();
+    void report();
 
   private:
     const Simulation* simulation_;
@@ -428,7 +428,7 @@ std::string textOf(const World& world, const Collision& collision) {
            std::string(collision.into);
 }
 
-void CollisionLog::tell() {
+void CollisionLog::report() {
     constexpr int kMaxCollisions = 100;
     constexpr double kSamePlace = 0.05;  // metres
     for (const Collision& collision : world_->collisions()) {
@@ -451,7 +451,7 @@ UnreachedLog::UnreachedLog(Simulation& simulation, const CommonOptions& options)
     next_ = simulation.events().next();
 }
 
-void UnreachedLog::tell() {
+void UnreachedLog::report() {
     constexpr std::size_t kMaxTold = 100;
     const EventLog& events = simulation_->events();
     for (next_ = std::max(next_, events.first()); next_ < events.next(); ++next_) {
@@ -474,7 +474,7 @@ void UnreachedLog::tell() {
     }
 }
 
-void LagLog::tell() {
+void LagLog::report() {
     using std::chrono::steady_clock;
     constexpr std::chrono::seconds kCalm(1);  // without a loss, before the run counts as keeping up
     constexpr int kMaxReported = 10;
@@ -505,7 +505,7 @@ class FailureLog {
   public:
     FailureLog(const Replay& replay, const CommonOptions& options)
         : replay_(&replay), options_(&options) {}
-    void tell();
+    void report();
 
   private:
     const Replay* replay_;
@@ -513,7 +513,7 @@ class FailureLog {
     bool is_told_ = false;
 };
 
-void FailureLog::tell() {
+void FailureLog::report() {
     if (is_told_) return;
     const std::string failure = replay_->failure();
     is_told_ = !failure.empty();
@@ -524,7 +524,7 @@ void FailureLog::tell() {
 class StepLogs {
   public:
     StepLogs(RunSite& site, const CommonOptions& options);
-    void tell();
+    void report();
 
   private:
     LagLog lag_;
@@ -547,11 +547,11 @@ StepLogs::StepLogs(RunSite& site, const CommonOptions& options)
     }
 }
 
-void StepLogs::tell() {
-    lag_.tell();
-    for (CollisionLog& log : collisions_) log.tell();
-    for (UnreachedLog& log : unreached_) log.tell();
-    for (FailureLog& log : failures_) log.tell();
+void StepLogs::report() {
+    lag_.report();
+    for (CollisionLog& log : collisions_) log.report();
+    for (UnreachedLog& log : unreached_) log.report();
+    for (FailureLog& log : failures_) log.report();
 }
 
 /// Runs it. If other threads are still at work at the end, the process exits at once, with the same
@@ -589,7 +589,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
         warn(options.common, kTool, startWarnings(room.simulation->world()));
     Simulation& simulation = *rooms.front().simulation;
     StepLogs logs(site, options.common);
-    simulation.onStep([&logs] { logs.tell(); });
+    simulation.onStep([&logs] { logs.report(); });
     const auto judge = options.judges->judge(rooms);
     judge->observe();
     simulation.onStep([&judge] { judge->observe(); });
@@ -619,7 +619,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
         for (std::size_t i = 0; i < records.size(); ++i)
             records[i]->recorder.end(rooms[i].simulation->world());
         options.bridges->commit(options.common);
-        tellLosses(server, options);
+        reportLosses(server, options);
         report(simulation, options);
         for (std::size_t i = 0; i < rooms.size(); ++i)
             if (const Replay* const replay = site.replay(i); replay != nullptr && replay->isCut())

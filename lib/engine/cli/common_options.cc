@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Warnings and notes go through tell() and warn(), which a batch catches; worker threads beyond the
-// first one are those that grantedThreads() grants.
+// Warnings and notes go through report() and warn(), which a batch catches; worker threads beyond
+// the first one are those that grantedThreads() grants.
 #include "cli/common_options.h"
 
 #include <tbb/global_control.h>
@@ -97,7 +97,7 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
               Enters::Nothing);
 }
 
-void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
+void report(const CommonOptions& options, const std::string& tool, const std::string& sentence) {
     if (options.quiet) return;
     const Diagnostic note{.message = sentence, .severity = Severity::Note};
     if (options.messages) return options.messages(note);
@@ -105,7 +105,7 @@ void tell(const CommonOptions& options, const std::string& tool, const std::stri
 }
 
 void logInfo(const CommonOptions& options, const std::string& tool, const std::string& text) {
-    if (options.verbose > 0) tell(options, tool, text);
+    if (options.verbose > 0) report(options, tool, text);
 }
 
 void warn(const CommonOptions& options, const std::string& tool,

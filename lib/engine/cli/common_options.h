@@ -45,7 +45,7 @@ void addCommonOptions(CommandLine& line, CommonOptions& options, const std::stri
 void logInfo(const CommonOptions& options, const std::string& tool, const std::string& text);
 
 /// Prints a sentence on stderr unless -q is given.
-void tell(const CommonOptions& options, const std::string& tool, const std::string& sentence);
+void report(const CommonOptions& options, const std::string& tool, const std::string& sentence);
 
 /// Prints each warning on stderr unless -q is given.
 void warn(const CommonOptions& options, const std::string& tool,

@@ -59,7 +59,7 @@ ImportRecords::ImportRecords(const Schemas& schemas, const std::string& name,
     if (found_ != nullptr) found_->any_plan = true;
 }
 
-void ImportRecords::tell(std::string sentence) {
+void ImportRecords::report(std::string sentence) {
     if (report_ == nullptr) return note(std::move(sentence));
     report_->addChoice(*place_.file, sentence);
 }

@@ -89,7 +89,7 @@ class ImportRecords {
         if (found_ != nullptr) found_->closed_gaps.push_back(gap);
     }
     /// Adds a note that is shown without -v, see ImportReport.
-    void tell(std::string sentence);
+    void report(std::string sentence);
     /// Adds a warning that only a check reports.
     void doubt(std::string sentence);
     void source(std::string path) { document_.sources.push_back(std::move(path)); }

@@ -214,7 +214,7 @@ std::string Changing::done() const {
 
 /// Tells all sessions of the change. \returns the answer to the request of this line
 std::string Changing::done(const std::string& line, const std::string& added) const {
-    state_->simulation().tellChange(printable(line), news_->scene_text);
+    state_->simulation().notifyChange(printable(line), news_->scene_text);
     std::string out = "OK ";
     out += verb_.empty() ? words_[0] : verb_;
     if (!added.empty()) out.append(" id=").append(prefixOf(room_)).append(added);

@@ -149,7 +149,7 @@ void Session::request(std::string_view line) {
     for (const Piece& piece : wordsOf(line)) words.push_back(piece.text);
     if (words.empty()) return;
     sync();
-    tellEvents();  // earlier events are sent before the answer
+    notifyEvents();  // earlier events are sent before the answer
     const bool first = std::exchange(first_, false);
     // A web page can make a browser send requests to ports of its machine: lines of them might pass
     // for those of a client.
@@ -206,7 +206,7 @@ void Session::stepped(bool has_room) {
     sync();
     receiveAsked();
     sendCompletions();
-    if (has_room) tellEvents();
+    if (has_room) notifyEvents();
     if (every_ > 0) streamSensor();
     if (guest_) stepGuest(has_room);
     if (seek_ && seek_->is_over) answerSeek();

@@ -171,7 +171,7 @@ class Session {
     bool mayMove();
     void leave();
     void sendCompletions();
-    void tellEvents();
+    void notifyEvents();
     void answerStep();
     void answerSeek();
     void hold(Words words, Condition until);

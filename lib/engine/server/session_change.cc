@@ -151,7 +151,7 @@ void Session::events(Words words) {
         }
     }
     if (words.size() == 1) kinds = allEventKinds();
-    tellEvents();
+    notifyEvents();
     next_events_.clear();
     forEachLog([&](EventLog& log) {
         log.want(kinds);
@@ -177,7 +177,7 @@ void Session::mark(Words words) {
         return error(400, {"a mark is text in UTF-8 without control characters"});
     state_->simulation().events().add(EventKind::Mark, text);
     out_.append("OK MARK t=").append(formatMilliseconds(world().time())).append("\n");
-    tellEvents();
+    notifyEvents();
 }
 
 namespace {
@@ -242,7 +242,7 @@ void appendEvent(std::string& out, const Event& event, std::string_view where) {
 }  // namespace
 
 /// Writes new events while there is room; the rest waits.
-void Session::tellEvents() {
+void Session::notifyEvents() {
     constexpr std::size_t kRoom = std::size_t{1} << 16;
     if (events_.empty()) return;
     const std::size_t begin = out_.size();

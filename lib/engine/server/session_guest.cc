@@ -177,7 +177,7 @@ void Session::track(Words words) {
                                " behind TRACK id x,y [t=s] [kind=person|robot]"});
         }
     }
-    if (!room->simulation->tracks().tell(std::move(told)))
+    if (!room->simulation->tracks().report(std::move(told)))
         return error(429, {"there are ", std::to_string(TrackLog::kMostTracks), " tracks now"});
     out_.append("OK TRACK t=").append(formatMilliseconds(world().time())).append("\n");
 }

@@ -79,13 +79,13 @@ struct EventLog::Data {
     }
     void forget();
     void readScene();
-    void tellCollisions();
-    void tellUnreached();
-    void tellZones();
-    void tellMats();
-    void tellGates();
-    void tellSight();
-    void tellStates();
+    void notifyCollisions();
+    void notifyUnreached();
+    void notifyZones();
+    void notifyMats();
+    void notifyGates();
+    void notifySight();
+    void notifyStates();
     [[nodiscard]] bool wants(EventKind kind) const {
         return wanted[static_cast<std::size_t>(kind)] > 0;
     }
@@ -154,7 +154,7 @@ void EventLog::Data::readScene() {
     }
 }
 
-void EventLog::Data::tellCollisions() {
+void EventLog::Data::notifyCollisions() {
     for (const EventKind kind : {EventKind::Collision, EventKind::Stall}) {
         if (!wants(kind)) continue;
         for (const Collision& collision : world->collisions()) {
@@ -170,7 +170,7 @@ void EventLog::Data::tellCollisions() {
     }
 }
 
-void EventLog::Data::tellUnreached() {
+void EventLog::Data::notifyUnreached() {
     if (!wants(EventKind::Unreached)) return;
     for (const UnreachedPoint& point : world->unreached())
         put({.kind = EventKind::Unreached, .id = walkers[point.mover].id, .place = point.at});
@@ -178,7 +178,7 @@ void EventLog::Data::tellUnreached() {
 
 /// Tells all entries of a step before all exits: by its events a mover that goes on to a zone that
 /// adjoins is always in one. The edge of a zone is part of it.
-void EventLog::Data::tellZones() {
+void EventLog::Data::notifyZones() {
     if (!wants(EventKind::Enter) && !wants(EventKind::Leave)) return;
     std::vector<Event> left;
     for (std::size_t i = 0; i < walkers.size(); ++i) {
@@ -206,7 +206,7 @@ void EventLog::Data::tellZones() {
 }
 
 /// Per mat, movers that step on it come before those that leave.
-void EventLog::Data::tellMats() {
+void EventLog::Data::notifyMats() {
     if (!wants(EventKind::Mat)) return;
     const FloorSensors& floor = world->floorSensors();
     const auto tell = [this](const std::string& mat, const std::vector<std::string>& who,
@@ -226,7 +226,7 @@ void EventLog::Data::tellMats() {
     }
 }
 
-void EventLog::Data::tellGates() {
+void EventLog::Data::notifyGates() {
     if (!wants(EventKind::Gate)) return;
     const FloorSensors& floor = world->floorSensors();
     for (const Passage& passage : floor.passages())
@@ -238,7 +238,7 @@ void EventLog::Data::tellGates() {
 
 /// Looks once in kLookEvery, and only if a mover has moved or the scene has changed: a sight of
 /// less than that may be missed.
-void EventLog::Data::tellSight() {
+void EventLog::Data::notifySight() {
     if (!wants(EventKind::Seen) && !wants(EventKind::Lost)) return;
     const std::int64_t now = world->time() / kLookEvery;
     if (std::exchange(look, now) == now) return;
@@ -265,7 +265,7 @@ void EventLog::Data::tellSight() {
     watched = std::move(poses);
 }
 
-void EventLog::Data::tellStates() {
+void EventLog::Data::notifyStates() {
     if (!wants(EventKind::State)) return;
     if (!states) states.emplace(*world);
     for (RoomState& state : states->changed())
@@ -314,13 +314,13 @@ void EventLog::stepped() {
     if (!any) return;
     data_->forget();
     data_->readScene();
-    data_->tellCollisions();
-    data_->tellUnreached();
-    data_->tellZones();
-    data_->tellMats();
-    data_->tellGates();
-    data_->tellSight();
-    data_->tellStates();
+    data_->notifyCollisions();
+    data_->notifyUnreached();
+    data_->notifyZones();
+    data_->notifyMats();
+    data_->notifyGates();
+    data_->notifySight();
+    data_->notifyStates();
 }
 
 void EventLog::add(EventKind kind, std::string text, std::string other) {
@@ -329,7 +329,7 @@ void EventLog::add(EventKind kind, std::string text, std::string other) {
     data_->put({.kind = kind, .other = std::move(other), .text = std::move(text)});
 }
 
-void EventLog::tell(Event event) {
+void EventLog::notify(Event event) {
     assert(event.kind == EventKind::Activity || event.kind == EventKind::State ||
            event.kind == EventKind::Unreached);
     if (data_->wants(event.kind)) data_->put(std::move(event));

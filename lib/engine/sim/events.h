@@ -105,7 +105,7 @@ class EventLog {
 
     /// Adds an event at the world's time if its kind is subscribed. \pre Activity, Unreached of
     /// one, of a trip or of a script, or State of a thing that is not in the scene
-    void tell(Event event);
+    void notify(Event event);
 
     /// Events are numbered from 0 in their order; returns the number of the next one.
     [[nodiscard]] std::int64_t next() const;

@@ -146,10 +146,10 @@ void Simulation::giveScripted() {
 }
 
 /// Tells of the commands of the script that could not be carried out.
-void Simulation::tellScripted() {
+void Simulation::notifyScripted() {
     for (Event& event : std::exchange(script_events_, {})) {
         events_.add(EventKind::Mark, "script: " + event.text, event.id);
-        events_.tell(std::move(event));
+        events_.notify(std::move(event));
     }
 }
 
@@ -193,18 +193,18 @@ void Simulation::refuseScripted(const std::string& answer) {
     std::exchange(when_refused_, nullptr)(answer.substr(begin));
 }
 
-void Simulation::tellChange(std::string request, const std::string& scene_text) {
+void Simulation::notifyChange(std::string request, const std::string& scene_text) {
     std::string scene;
     if (!scene_text.empty() && recorder_ != nullptr) scene = recorder_->recordScene(scene_text);
     events_.add(EventKind::Change, std::move(request), std::move(scene));
 }
 
-void Simulation::tellReplayed(bool seeks) {
+void Simulation::notifyReplayed(bool seeks) {
     for (const RunChange& change : replay_->takeMade()) {
         if (seeks) continue;
         const bool needs_scene = !change.scene.empty() && recorder_ != nullptr;
         const auto write = needs_scene ? recorder_->options().scene_text : nullptr;
-        tellChange(change.text, write ? write(world_->scene()) : "");
+        notifyChange(change.text, write ? write(world_->scene()) : "");
     }
 }
 
@@ -247,7 +247,7 @@ std::function<void()> Simulation::preparation(std::optional<SimTime> to) const {
 std::shared_ptr<const void> Simulation::adoptPrepared(std::optional<SimTime> to) {
     if (followers_.empty()) {
         auto before = replay_->adopt(*world_);
-        tellReplayed(to.has_value());
+        notifyReplayed(to.has_value());
         return before;
     }
     auto old = std::make_shared<std::vector<std::shared_ptr<const void>>>();
@@ -255,10 +255,10 @@ std::shared_ptr<const void> Simulation::adoptPrepared(std::optional<SimTime> to)
         work();
         old->clear();  // thousands of changes of a moment would keep as many worlds
         old->push_back(replay_->adopt(*world_));
-        tellReplayed(to.has_value());
+        notifyReplayed(to.has_value());
         for (Simulation* const other : followers_) {
             old->push_back(other->replay_->adopt(*other->world_));
-            other->tellReplayed(to.has_value());
+            other->notifyReplayed(to.has_value());
         }
     }
     for (const auto& changer : changers_) changer();
@@ -304,10 +304,10 @@ bool Simulation::seekSome(SimTime time, WallTime until) {
 
 /// Takes one step of this world and of those that it leads.
 void Simulation::step() {
-    tellScripted();  // those of the start, before there were subscribers
+    notifyScripted();  // those of the start, before there were subscribers
     for (const auto& preparer : preparers_) preparer();
     if (replay_ != nullptr) {
-        replay_->prepareAll(*world_, {}, [this] { tellReplayed(false); });
+        replay_->prepareAll(*world_, {}, [this] { notifyReplayed(false); });
         replay_->step(*world_);
     } else {
         world_->stepDeferred();
@@ -315,17 +315,17 @@ void Simulation::step() {
     events_.stepped();
     if (replay_ != nullptr)
         for (const RunUnreached& target : replay_->unreached())
-            events_.tell({.kind = EventKind::Unreached,
-                          .id = target.id,
-                          .other = target.to,
-                          .place = target.at,
-                          .text = target.text});
+            events_.notify({.kind = EventKind::Unreached,
+                            .id = target.id,
+                            .other = target.to,
+                            .place = target.at,
+                            .text = target.text});
     // Before the next commands: one of motion would clear the stall flag of this step.
     if (recorder_ != nullptr) recorder_->record(*world_);
     for (Simulation* const other : followers_) other->step();
     endIfReached();
     if (!finished_) giveScripted();
-    tellScripted();
+    notifyScripted();
     if (!finished_)
         for (const std::shared_ptr<Director>& director : directors_) director->stepped(*this);
     for (const auto& observer : observers_) observer();

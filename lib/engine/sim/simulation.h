@@ -93,7 +93,7 @@ class Simulation {
     /// Reports that this request changed the world; a record stores it.
     /// \param scene_text of the changed scene, which the record stores, too; "" if the request is
     /// sufficient
-    void tellChange(std::string request, const std::string& scene_text);
+    void notifyChange(std::string request, const std::string& scene_text);
 
     /// Carries out lines of a script that extensions have read. Call it before the first step.
     /// \pre not null
@@ -236,14 +236,14 @@ class Simulation {
     bool finishStep(WallTime until);
     [[nodiscard]] bool awaitsFrames() const;
     void giveScripted();
-    void tellScripted();
+    void notifyScripted();
     void step();
     void endIfReached();
     /// Returns true after the last moment of all records.
     [[nodiscard]] bool isReplayed() const;
     bool seekTogether(SimTime time, WallTime until);
     /// Tells of the changes that a replay has made since the last call, unless by a seek.
-    void tellReplayed(bool seeks);
+    void notifyReplayed(bool seeks);
     /// Aligns simulated time with wall time from here on.
     void startAt(WallTime now);
     /// As startAt(), with the next step as far ahead as it was.

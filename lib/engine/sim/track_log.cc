@@ -16,7 +16,7 @@ void appendTrackRow(std::string& out, const ToldTrack& track) {
     out.append(",").append(track.source).append(",").append(formatSimTime(track.told)).append("\n");
 }
 
-bool TrackLog::tell(ToldTrack track) {
+bool TrackLog::report(ToldTrack track) {
     const auto key = std::make_pair(track.source, track.track);
     if (newest_.size() >= kMostTracks && !newest_.contains(key)) {
         std::erase_if(newest_,

@@ -46,7 +46,7 @@ class TrackLog {
     static constexpr std::size_t kMostTracks = 1000;
 
     /// \returns false if there are kMostTracks others now \pre not earlier than those before
-    bool tell(ToldTrack track);
+    bool report(ToldTrack track);
 
     /// Positions are numbered from 0 in their order; returns the number of the next one.
     [[nodiscard]] std::int64_t next() const {

@@ -249,7 +249,7 @@ int World::command(std::size_t mover, const Command& command) {
     state.trip.reset();
     if (std::exchange(state.own_limits, std::nullopt))
         state.limits = limitsOf(data.movers[mover].model, 0);
-    data.tell(mover);
+    data.notify(mover);
     data.motions[mover].command(command);
     data.pilots[mover].turnOff();
     const bool goes = command.verb == Verb::Goto;

@@ -123,7 +123,7 @@ TEST(WorldEditor, TheTextOfALoadedSceneIsPrepared) {
     change.prepare();
     EXPECT_EQ(texts, 1);
     change.adopt();
-    it.simulation.tellChange("LOAD hall.env hall.3dm", change.news->scene_text);
+    it.simulation.notifyChange("LOAD hall.env hall.3dm", change.news->scene_text);
     EXPECT_EQ(texts, 1);
     EXPECT_EQ(readAll(folder / "run/scenes/scene-000001.env"), "1 robots");
     // Without a name of a file the request is sufficient.

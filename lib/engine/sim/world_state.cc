@@ -177,7 +177,7 @@ World::Data::Data(std::shared_ptr<SceneResources> room, SimTime length, const Ru
     checkCrowding(movers, motions, std::max(kMoverSight, kSteps * longestStep()));
 }
 
-void World::Data::tell(std::size_t mover) {
+void World::Data::notify(std::size_t mover) {
     MoverState& state = states[mover];
     if (state.told == 0) state.told_first = time;
     if (state.told == 0 || state.told_last != time) ++state.told;

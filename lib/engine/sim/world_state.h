@@ -141,7 +141,7 @@ struct World::Data {
         ++steps;
     }
     /// Records that a mover is given a command.
-    void tell(std::size_t mover);
+    void notify(std::size_t mover);
     /// Sets a mover to a recorded state.
     void put(std::size_t mover, const RobotStatus& status);
     /// Advances the world by one step. Movers propose their moves in parallel; moves that cannot

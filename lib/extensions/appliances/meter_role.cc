@@ -279,7 +279,7 @@ class Meters : public RoleService {
             if (meter.room != room) continue;
             const auto known = before.find(id);
             if (known == before.end() || known->second == meter.watts) continue;
-            tell(id, meter, "power", formatDouble(meter.watts));
+            notify(id, meter, "power", formatDouble(meter.watts));
         }
     }
 
@@ -296,18 +296,18 @@ class Meters : public RoleService {
                 std::floor(meter.joules / kJoules / meter.plug.count + kRounding));
             if (counted == meter.counted) continue;
             meter.counted = counted;
-            tell(id, meter, "energy", formatDouble(meter.count()));
+            notify(id, meter, "energy", formatDouble(meter.count()));
         }
     }
 
     /// Raises an event of the run.
-    void tell(const std::string& id, const Meter& meter, const char* key, std::string value) {
+    void notify(const std::string& id, const Meter& meter, const char* key, std::string value) {
         for (MeterClient* const client : clients_) client->hear(id, meter);
-        run_.rooms[meter.room].simulation->events().tell({.kind = EventKind::State,
-                                                          .time = run_.now(),
-                                                          .id = meter.plug.id,
-                                                          .other = key,
-                                                          .text = std::move(value)});
+        run_.rooms[meter.room].simulation->events().notify({.kind = EventKind::State,
+                                                            .time = run_.now(),
+                                                            .id = meter.plug.id,
+                                                            .other = key,
+                                                            .text = std::move(value)});
     }
 
     Run run_;

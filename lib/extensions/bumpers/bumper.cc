@@ -225,7 +225,7 @@ class Bumpers : public RoleService {
                 !(bumper.stays && standsAt(room.world().status(mover), bumper.at))) {
                 bumper.force = 0;
                 bumper.into.clear();
-                tellState(bumper);
+                notifyState(bumper);
             }
         }
         keepVelocities();
@@ -304,15 +304,15 @@ class Bumpers : public RoleService {
         line.append(formatDouble(bumper.force)).append(" speed=");
         line.append(formatFixed(speed, 3)).append("\n");
         for (BumperClient* const client : clients_) client->hear(name, line);
-        tellState(bumper);
+        notifyState(bumper);
     }
 
-    void tellState(const BumperOfRun& bumper) const {
-        run_.rooms[bumper.room].simulation->events().tell({.kind = EventKind::State,
-                                                           .time = run_.now(),
-                                                           .id = bumper.id,
-                                                           .other = "force",
-                                                           .text = formatDouble(bumper.force)});
+    void notifyState(const BumperOfRun& bumper) const {
+        run_.rooms[bumper.room].simulation->events().notify({.kind = EventKind::State,
+                                                             .time = run_.now(),
+                                                             .id = bumper.id,
+                                                             .other = "force",
+                                                             .text = formatDouble(bumper.force)});
     }
 
     Run run_;

@@ -520,7 +520,7 @@ class DxfImporter {
         std::vector<PlanShape> expanded = expander.expand(source.metres_per_unit);
         if (!is_ours) leaveOutStrays(expanded, &out);
         const auto moved = expander.moveHome(expanded);
-        if (moved) out.tell(surveyText(*moved, "drawing"));
+        if (moved) out.report(surveyText(*moved, "drawing"));
         const double metres = source.metres_per_unit;
         const Affine frame{{metres, 0}, {0, metres}, -1 * moved.value_or(Vec2())};
         LayerSorter::Sorted shapes = sorter.sort(std::move(expanded));

@@ -120,7 +120,7 @@ void moveHome(Region& region, const std::string& name, ImportRecords& out) {
     for (Point2& p : region.outline) p = p - *way;
     for (Polygon& hole : region.holes)
         for (Point2& p : hole) p = p - *way;
-    out.tell(surveyText(*way, "gallery"));
+    out.report(surveyText(*way, "gallery"));
 }
 
 /// Adds a closed fence with the coordinates as they are: a proof is about this polygon, and whole

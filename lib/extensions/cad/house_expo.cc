@@ -228,7 +228,7 @@ void moveHome(HousePlan& plan, const std::string& name, ImportRecords& out) {
     for (Box& room : plan.boxes)
         for (std::size_t i = 0; i < room.corners.size(); ++i)
             room.corners[i] -= i % 2 == 0 ? way->x : way->y;
-    out.tell(surveyText(*way, "plan"));
+    out.report(surveyText(*way, "plan"));
 }
 
 /// The rings after snapping and simplifying; those without area are dropped.

@@ -847,7 +847,7 @@ SvgImport importSvg(std::string_view bytes, const std::string& name, const Impor
     source.better_layers = better_layers;
     leaveOutStrays(drawing.shapes, &out);
     if (const auto way = movedHome(drawing.shapes, name)) {
-        out.tell(surveyText(*way, "drawing"));
+        out.report(surveyText(*way, "drawing"));
         for (UnreadThing& thing : drawing.unread)
             if (!thing.extent.empty())
                 thing.extent = {thing.extent.low - *way, thing.extent.high - *way};

@@ -250,11 +250,11 @@ std::string movedText(const CalibratedLaser& laser) {
 /// Reports a laser on stderr.
 void report(const TaskInput& task, const CalibratedLaser& laser) {
     const PlanFit& fit = laser.fit;
-    tell(task.common, "envc",
-         movedText(laser) + " by " + countText(fit.scans, "scan") + "; standard deviations " +
-             sigmasText(fit) + "; " + formatFixed(100 * fit.inliers, 0) + " % of " +
-             std::to_string(fit.beams) + " beams within " + formatFixed(kPlanInlier, 1) +
-             " m of the plan");
+    report(task.common, "envc",
+           movedText(laser) + " by " + countText(fit.scans, "scan") + "; standard deviations " +
+               sigmasText(fit) + "; " + formatFixed(100 * fit.inliers, 0) + " % of " +
+               std::to_string(fit.beams) + " beams within " + formatFixed(kPlanInlier, 1) +
+               " m of the plan");
     for (const FreeMotion& motion : fit.unknown)
         warn(task.common, "envc",
              laser.seen.sensor.id + ": the scans are equal for all poses " + motion.text(fit.pose) +
@@ -391,18 +391,18 @@ void takePeople(const TaskInput& task, const BodyFit& fit, const BodyTarget& tar
                                 formatFixed(fit.height_sigma, 2) + " m by the size of their legs)"
                           : "robots with a radius of " + formatFixed(fit.radius, 4) + " m (+- " +
                                 formatFixed(fit.radius_sigma, 4) + " m)";
-    tell(task.common, "envc",
-         bodies + " at " + std::to_string(fit.moments) + " moments; the pose of " +
-             lasers[0].seen.sensor.id + " is that of the layout, the others stand to it");
+    report(task.common, "envc",
+           bodies + " at " + std::to_string(fit.moments) + " moments; the pose of " +
+               lasers[0].seen.sensor.id + " is that of the layout, the others stand to it");
     for (std::size_t i = 1; i < lasers.size(); ++i) {
         CalibratedLaser& laser = lasers[i];
         laser.fit.pose = fit.poses[i];
         laser.fit.covariance = fit.covariances[i];
         laser.fit.scans = laser.seen.scans.size();
-        tell(task.common, "envc",
-             movedText(laser) + " by " +
-                 countText(fit.legs[i], target.isPerson() ? "leg" : "robot") +
-                 "; standard deviations " + sigmasText(laser.fit));
+        report(task.common, "envc",
+               movedText(laser) + " by " +
+                   countText(fit.legs[i], target.isPerson() ? "leg" : "robot") +
+                   "; standard deviations " + sigmasText(laser.fit));
         setPose(laser, layout);
         layout.history.push_back(historyOf(laser));
     }
@@ -459,14 +459,14 @@ void report(const TaskInput& task, const CalibratedCamera& camera) {
     const auto sigma = [&fit](std::size_t a, std::size_t b, std::size_t c) {
         return std::sqrt(fit.covariance[a][a] + fit.covariance[b][b] + fit.covariance[c][c]);
     };
-    tell(task.common, "envc",
-         camera.sensor.id + ": moved by " +
-             formatFixed(length(fit.pose.position - camera.sensor.pose.position), 3) + " m by " +
-             countText(fit.pictures, "picture") + "; standard deviations " +
-             formatFixed(1000 * sigma(0, 1, 2), 1) + " mm and " +
-             formatFixed(kDegrees * sigma(3, 4, 5), 3) + " deg; outlines of people " +
-             formatFixed(fit.height.mean, 2) + " m high within " + formatFixed(fit.pixels, 1) +
-             " pixels");
+    report(task.common, "envc",
+           camera.sensor.id + ": moved by " +
+               formatFixed(length(fit.pose.position - camera.sensor.pose.position), 3) + " m by " +
+               countText(fit.pictures, "picture") + "; standard deviations " +
+               formatFixed(1000 * sigma(0, 1, 2), 1) + " mm and " +
+               formatFixed(kDegrees * sigma(3, 4, 5), 3) + " deg; outlines of people " +
+               formatFixed(fit.height.mean, 2) + " m high within " + formatFixed(fit.pixels, 1) +
+               " pixels");
 }
 
 /// The line of the layout's history about a camera.

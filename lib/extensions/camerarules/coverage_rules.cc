@@ -49,7 +49,7 @@ class CoverageRules final : public CoverageGroup {
         const std::vector<CameraRules> rules =
             measureSiteRules(building, site.coverage, site.how, facing_, privacy_);
         if (!facing_.empty() && site.how.plane == 0)
-            tell(site.common, "coverage", std::string(kFacesOnFloor));
+            report(site.common, "coverage", std::string(kFacesOnFloor));
         addRules(findings.parts, building, site.coverage, rules);
         for (JudgedRule& rule : judgedInSite(building, rules)) {
             if (!rule.is_required) continue;

@@ -402,7 +402,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             continue;
         }
         if (!doer.is_begun) {
-            tell(simulation, doer, 1);
+            notify(simulation, doer, 1);
             doer.is_begun = true;
             doer.gave_up = false;
             doer.tries = doer.asks = 0;
@@ -418,7 +418,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
             if (work_left_ <= 0) return waiting_.push_back(&doer);
             if (!depart(simulation, *mover, doer)) {
                 doer.walks = false;
-                if (doer.gave_up) tellUnreached(simulation, *mover, doer);
+                if (doer.gave_up) notifyUnreached(simulation, *mover, doer);
             }
         }
         if (!doer.walks && !was_there && !doer.gave_up) {
@@ -431,7 +431,7 @@ void ActivityDirector::goOn(Simulation& simulation, Doer& doer) {
         if (std::exchange(doer.is_doing, false))
             return askDeed(simulation, doer, actionOf(doer).does->end);
         endUse(simulation, doer);
-        tell(simulation, doer, doer.gave_up ? -1 : 0);
+        notify(simulation, doer, doer.gave_up ? -1 : 0);
         doer.is_begun = false;
         // Without the first part of a deed there is no second one.
         const PersonVerb* const does = actionOf(doer).does;
@@ -447,7 +447,7 @@ void ActivityDirector::cut(Simulation& simulation, Doer& doer) {
     doer.rest.clear();
     if (std::exchange(doer.is_begun, false)) {
         endUse(simulation, doer);
-        tell(simulation, doer, -1);
+        notify(simulation, doer, -1);
     }
     doer.line.reset();
 }
@@ -921,13 +921,13 @@ void ActivityDirector::watchStay(const World& world, std::size_t mover, Doer& do
     doer.until = world.time();
 }
 
-void ActivityDirector::tell(Simulation& simulation, const Doer& doer, int value) const {
+void ActivityDirector::notify(Simulation& simulation, const Doer& doer, int value) const {
     const DayLine& line = plan_.lines[*doer.line];
-    simulation.events().tell({.kind = EventKind::Activity,
-                              .id = line.person,
-                              .other = line.name,
-                              .value = value,
-                              .text = line.actions[doer.action].text});
+    simulation.events().notify({.kind = EventKind::Activity,
+                                .id = line.person,
+                                .other = line.name,
+                                .value = value,
+                                .text = line.actions[doer.action].text});
 }
 
 /// Tells the states of the shut doors that keep a person from its goal; "" if others do.
@@ -946,11 +946,12 @@ std::string ActivityDirector::barriersOf(const World& world, std::size_t mover, 
     return barriersText(from, way, barriers);
 }
 
-void ActivityDirector::tellUnreached(Simulation& simulation, std::size_t mover, const Doer& doer) {
-    simulation.events().tell({.kind = EventKind::Unreached,
-                              .id = plan_.lines[*doer.line].person,
-                              .other = actionOf(doer).target,
-                              .text = barriersOf(simulation.world(), mover, doer)});
+void ActivityDirector::notifyUnreached(Simulation& simulation, std::size_t mover,
+                                       const Doer& doer) {
+    simulation.events().notify({.kind = EventKind::Unreached,
+                                .id = plan_.lines[*doer.line].person,
+                                .other = actionOf(doer).target,
+                                .text = barriersOf(simulation.world(), mover, doer)});
 }
 
 }  // namespace ispace::days

@@ -178,8 +178,8 @@ class ActivityDirector final : public Director {
                                  const OpenedDoor& opened) const;
     bool act(Simulation& simulation, Doer& doer) const;
     std::string barriersOf(const World& world, std::size_t mover, const Doer& doer);
-    void tell(Simulation& simulation, const Doer& doer, int value) const;
-    void tellUnreached(Simulation& simulation, std::size_t mover, const Doer& doer);
+    void notify(Simulation& simulation, const Doer& doer, int value) const;
+    void notifyUnreached(Simulation& simulation, std::size_t mover, const Doer& doer);
     [[nodiscard]] const DayAction& actionOf(const Doer& doer) const {
         return plan_.lines[*doer.line].actions[doer.action];
     }

@@ -223,7 +223,7 @@ class Heads : public RoleService {
             if (head.head.pan == head.turn->pan && head.head.tilt == head.turn->tilt &&
                 now >= head.turn->begin + simSeconds(head.turn->seconds)) {
                 head.turn.reset();
-                tell(name, head);
+                notify(name, head);
                 continue;
             }
             if (now < head.turn->next) continue;
@@ -232,7 +232,7 @@ class Heads : public RoleService {
                 if (head.asked->isMade(head.head)) ask(head, now);
             } else {
                 head.turn.reset();
-                tell(name, head);
+                notify(name, head);
             }
         }
         // One change for all heads of a room: it builds the scene anew.
@@ -270,7 +270,7 @@ class Heads : public RoleService {
         asked.append(asked.empty() ? "" : " ; ").append(head.id);
         asked.append(" pan=").append(formatDouble(pan)).append(" tilt=").append(formatDouble(tilt));
     }
-    void tell(std::string_view name, const HeadOfRun& head) {
+    void notify(std::string_view name, const HeadOfRun& head) {
         std::string line = "EVENT turned t=" + formatMilliseconds(run_.now()) + " id=";
         line.append(name).append(anglesText(head)).append("\n");
         for (HeadClient* const client : clients_) client->hear(name, line);

@@ -423,9 +423,9 @@ Document readIfc(std::string_view bytes, const std::string& operand, const Impor
     withFileName(operand, [&] {
         const auto moved = movedHome(building);
         const std::size_t storey = chosenStorey(building, options);
-        out.tell(storeysText(building, storey));
+        out.report(storeysText(building, storey));
         if (options.report != nullptr) options.report->has_storeys = true;
-        if (moved) out.tell(surveyText(*moved, "building"));
+        if (moved) out.report(surveyText(*moved, "building"));
         listRooms(building, 0, storey, operand, options, work, schemas);
         out.setStorey(storeyWord(building, storey));
         warnOfUnread(building, storey, true, writeStorey(building, storey, options, work, out),

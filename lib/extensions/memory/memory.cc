@@ -295,9 +295,9 @@ class Memory : public RoleService {
             const Burst* const burst = std::get_if<Burst>(&reading.value);
             const auto position = burst == nullptr ? std::nullopt : positionIn(*burst);
             if (position)
-                tell(run_.touches.moved(tag.name, run_.volumes.about(tag.room, *position), now));
+                notify(run_.touches.moved(tag.name, run_.volumes.about(tag.room, *position), now));
         }
-        tell(run_.touches.passed(now));
+        notify(run_.touches.passed(now));
     }
 
     [[nodiscard]] bool holdsWorld() const override { return false; }
@@ -311,7 +311,7 @@ class Memory : public RoleService {
     }
 
   private:
-    void tell(const std::vector<Touch>& touches) {
+    void notify(const std::vector<Touch>& touches) {
         for (const Touch& touch : touches) {
             std::string line = "EVENT ";
             line.append(nameOf(touch.kind)).append(" t=").append(formatMilliseconds(touch.time));
@@ -320,13 +320,13 @@ class Memory : public RoleService {
             const Volume* const volume = run_.volumes.find(touch.volume);
             line.append(" text=").append(volume == nullptr ? "" : volume->content).append("\n");
             for (MemoryClient* const client : clients_) client->hear(touch, line);
-            tellState(touch.volume, volume);
+            notifyState(touch.volume, volume);
         }
     }
 
     /// Raises the event of the run when the first tag comes into a volume, and when the last has
     /// left.
-    void tellState(const std::string& id, const Volume* volume) {
+    void notifyState(const std::string& id, const Volume* volume) {
         const bool is_touched = !run_.touches.tagsIn(id).empty();
         const auto known = touched_.find(id);
         if (is_touched == (known != touched_.end())) return;
@@ -338,7 +338,7 @@ class Memory : public RoleService {
             touched_.erase(known);
         const Run::Room& room = run_.rooms[number];
         const std::string prefix = room.id + "/";
-        room.simulation->events().tell(
+        room.simulation->events().notify(
             {.kind = EventKind::State,
              .time = run_.now(),
              .id = id.starts_with(prefix) ? id.substr(prefix.size()) : id,

@@ -141,7 +141,7 @@ class CloudPlan {
         const Point2 low{band.low.x, band.low.y};
         if (const auto way = wayFromSurvey(low)) {
             survey_ = *way;
-            out_.tell(surveyText(survey_, "cloud"));
+            out_.report(surveyText(survey_, "cloud"));
         }
         corner_ = low - survey_ - Vec2{(rim + 0.5) * cell_, (rim + 0.5) * cell_};
         const double columns = std::ceil((band.high.x - survey_.x - corner_.x) / cell_) + rim;

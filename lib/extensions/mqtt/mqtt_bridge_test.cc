@@ -324,7 +324,7 @@ class BridgeTest : public ::testing::Test {
         bridge->stepped();
         bridge->serve(false);
     }
-    void tell(const std::string& topic, const std::string& payload, bool retained = false) {
+    void publish(const std::string& topic, const std::string& payload, bool retained = false) {
         broker.incoming.push_back({topic, payload, retained});
         bridge->serve(false);
         // A change has half of the time; the next waits for its turn.
@@ -363,26 +363,26 @@ TEST_F(BridgeTest, PublishesStatesAndSubscribesToCommands) {
 }
 
 TEST_F(BridgeTest, CarriesOutCommands) {
-    tell("home/lp/on/set", "ON");
+    publish("home/lp/on/set", "ON");
     EXPECT_EQ(broker.last("home/lp/on"), "ON");
-    tell("home/lp/level/set", "25");
+    publish("home/lp/level/set", "25");
     EXPECT_EQ(broker.last("home/lp/level"), "25");
-    tell("home/lp/color/set", "255,0,51");
+    publish("home/lp/color/set", "255,0,51");
     EXPECT_EQ(broker.last("home/lp/color"), "255,0,51");
-    tell("home/lp/on/set", "OFF", true);
+    publish("home/lp/on/set", "OFF", true);
     EXPECT_EQ(broker.last("home/lp/on"), "ON") << "a retained command is old";
 }
 
 TEST_F(BridgeTest, RefusesBadCommands) {
-    tell("home/lp/level/set", "500");
+    publish("home/lp/level/set", "500");
     EXPECT_EQ(broker.last("home/error").substr(0, 8), "ERR 400 ");
     broker.published.clear();
     for (const char* payload : {"", "O N", "\n", "1 level=1"}) {
-        tell("home/lp/on/set", payload);
+        publish("home/lp/on/set", payload);
         EXPECT_NE(broker.last("home/error"), "") << payload;
         broker.published.clear();
     }
-    tell("elsewhere/lp/on/set", "ON");
+    publish("elsewhere/lp/on/set", "ON");
     EXPECT_TRUE(broker.published.empty());
 }
 
@@ -399,7 +399,7 @@ TEST_F(BridgeTest, SaysInWordsOfTopicsWhatIsWanted) {
         {"l2/on", "ON", "no thing of the room has this state, see home/+/+"}};
     for (const auto& [topic, payload, reason] : cases) {
         broker.published.clear();
-        tell("home/" + std::string(topic) + "/set", payload);
+        publish("home/" + std::string(topic) + "/set", payload);
         EXPECT_EQ(broker.last("home/error"),
                   "ERR 400 home/" + std::string(topic) + "/set: " + reason);
     }
@@ -446,7 +446,7 @@ TEST_F(BridgeTest, AnswersOtherRuns) {
 }
 
 TEST_F(BridgeTest, TellsAllAgainAfterAReconnection) {
-    tell("home/lp/on/set", "ON");
+    publish("home/lp/on/set", "ON");
     broker.published.clear();
     bridge->serve(false);
     EXPECT_TRUE(broker.published.empty());
@@ -461,13 +461,13 @@ TEST_F(BridgeTest, IntroducesNewThings) {
     step();
     EXPECT_EQ(broker.last("home/b1/on"), "OFF");
     EXPECT_NE(broker.last("homeassistant/switch/home_b1/config"), "");
-    tell("home/b1/on/set", "ON");
+    publish("home/b1/on/set", "ON");
     EXPECT_EQ(broker.last("home/b1/on"), "ON");
 }
 
 TEST_F(BridgeTest, AStateIsNoNews) {
     broker.published.clear();
-    tell("home/lp/level/set", "25");
+    publish("home/lp/level/set", "25");
     EXPECT_EQ(broker.published, (std::vector<MqttMessage>{{"home/lp/level", "25", true}}));
 }
 
@@ -511,10 +511,10 @@ TEST_F(BridgeTest, RobotsAreVacuumCleaners) {
     testing::Talk::ask(robot, "SPEED 0.3");
     for (int i = 0; i < 20; ++i) step();
     EXPECT_EQ(broker.last("home/r2/vacuum"), R"({"state":"cleaning"})");
-    tell("home/r2/vacuum/set", "stop");
+    publish("home/r2/vacuum/set", "stop");
     EXPECT_NE(broker.last("home/error"), "") << "another client drives it";
     testing::Talk::ask(robot, "QUIT");
-    tell("home/r2/vacuum/set", "dance");
+    publish("home/r2/vacuum/set", "dance");
     EXPECT_NE(broker.last("home/error").find("wanted stop or return_to_base"), std::string::npos);
 }
 

@@ -57,7 +57,7 @@ void BuildingRun::Data::replay() {
     const World& world = *rooms.front().world;
     leader.beforeStep([this, &world] {
         showLifts(world.time() + world.stepLength());
-        tellLifts();
+        notifyLifts();
     });
     leader.onStep([this] { locate(); });
     leader.onReplayChange([this, &world] {

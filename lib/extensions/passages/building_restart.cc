@@ -91,7 +91,7 @@ void BuildingRun::Data::restart() {
     }
     for (Room& room : rooms) {
         room.world->restart(Scene(*room.world->sharedStart()));
-        room.simulation->tellChange("RESET", "");
+        room.simulation->notifyChange("RESET", "");
     }
     for (std::size_t i = 0; i < passages.size(); ++i) {
         stops[i].assign(stops[i].size(), {});

@@ -199,7 +199,7 @@ void BuildingRun::Data::change(std::size_t room, const NextScene& next,
                                std::span<const std::string> placed) {
     rooms[room].world->change(next, placed);
     for (std::string& request : requests)
-        rooms[room].simulation->tellChange(std::move(request), "");
+        rooms[room].simulation->notifyChange(std::move(request), "");
 }
 
 std::string BuildingRun::Data::move(Traveller& who, std::size_t room, const Pose2& pose,
@@ -414,7 +414,7 @@ LiftState BuildingRun::Data::liftState(std::size_t passage) const {
 }
 
 /// Tells the states of lifts that have changed, as events of their cabins.
-void BuildingRun::Data::tellLifts() {
+void BuildingRun::Data::notifyLifts() {
     told_lifts.resize(passages.size());
     told_at = rooms.front().world->time();
     for (std::size_t i = 0; i < passages.size(); ++i) {
@@ -424,10 +424,10 @@ void BuildingRun::Data::tellLifts() {
         EventLog& events = rooms[first_room[i]].simulation->events();
         for (std::size_t k = 0; k < told.size(); ++k)
             if (told[k] != now[k])
-                events.tell({.kind = EventKind::State,
-                             .id = now[k].id,
-                             .other = now[k].key,
-                             .text = now[k].value});
+                events.notify({.kind = EventKind::State,
+                               .id = now[k].id,
+                               .other = now[k].key,
+                               .text = now[k].value});
         told = std::move(now);
     }
 }

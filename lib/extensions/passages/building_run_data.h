@@ -141,7 +141,7 @@ struct BuildingRun::Data {
     [[nodiscard]] std::vector<double> waits() const;
     [[nodiscard]] std::vector<LiftNames> liftNames() const;
     [[nodiscard]] LiftState liftState(std::size_t passage) const;
-    void tellLifts();
+    void notifyLifts();
 
     // Replays.
     void replay();
@@ -183,7 +183,7 @@ struct BuildingRun::Data {
     [[nodiscard]] static std::string loadOf(const Scene& scene, const std::string& person);
     /// \param reason why it is given up, which the event `unreached` tells
     void finish(const std::string& id, Outcome outcome, const std::string& reason = "");
-    void tellUnreached(const Traveller& who, const BuildingTrip& trip, const std::string& reason);
+    void notifyUnreached(const Traveller& who, const BuildingTrip& trip, const std::string& reason);
     void giveUp(Traveller& who, BuildingTrip& trip, Outcome outcome);
     void clearLanding(Traveller& who, BuildingTrip& trip);
     /// Returns how far from a landing it leaves it to others.

@@ -104,11 +104,11 @@ std::string BuildingScript::give(const Line& line, BuildingRun& run, std::size_t
         const TripAnswer answer = line.lift.empty() ? run.travel(line.mover, line.plan)
                                                     : run.ride(line.mover, line.lift, line.storey);
         if (const auto& point = answer.unreached)
-            run.rooms()[room].simulation->events().tell({.kind = EventKind::Unreached,
-                                                         .id = line.mover,
-                                                         .other = run.rooms()[point->room].id,
-                                                         .place = point->at,
-                                                         .text = answer.refusal});
+            run.rooms()[room].simulation->events().notify({.kind = EventKind::Unreached,
+                                                           .id = line.mover,
+                                                           .other = run.rooms()[point->room].id,
+                                                           .place = point->at,
+                                                           .text = answer.refusal});
         return answer.refusal;
     }
     if (std::string refusal = refusalOf(run, room, line.mover, line.command); !refusal.empty())

@@ -126,23 +126,23 @@ void BuildingRun::Data::finish(const std::string& id, Outcome outcome, const std
     release(id);
     const int command = found->second.command;
     if (outcome == Outcome::Unreached || outcome == Outcome::Stall)
-        tellUnreached(travellers.find(id)->second, found->second, reason);
+        notifyUnreached(travellers.find(id)->second, found->second, reason);
     new_ends.push_back({id, command, outcome, rooms.front().world->time()});
     trips.erase(found);
     wanderOn(id, command, outcome);
 }
 
 /// Raises the event of a trip that is given up, unless it is one to a random point.
-void BuildingRun::Data::tellUnreached(const Traveller& who, const BuildingTrip& trip,
-                                      const std::string& reason) {
+void BuildingRun::Data::notifyUnreached(const Traveller& who, const BuildingTrip& trip,
+                                        const std::string& reason) {
     const auto wanderer = wanderers.find(who.id);
     if (wanderer != wanderers.end() && wanderer->second.trip == trip.command) return;
     const RoomPoint goal = trip.given_up.value_or(trip.plan.points[trip.goal]);
-    rooms[who.room].simulation->events().tell({.kind = EventKind::Unreached,
-                                               .id = who.id,
-                                               .other = rooms[goal.room].id,
-                                               .place = goal.at,
-                                               .text = reason});
+    rooms[who.room].simulation->events().notify({.kind = EventKind::Unreached,
+                                                 .id = who.id,
+                                                 .other = rooms[goal.room].id,
+                                                 .place = goal.at,
+                                                 .text = reason});
 }
 
 std::string BuildingRun::endTrip(const std::string& mover, Outcome outcome) {
@@ -203,7 +203,7 @@ std::optional<Outcome> BuildingRun::Data::ended(const Traveller& who, BuildingTr
 void BuildingRun::Data::advance() {
     ends = std::exchange(new_ends, {});
     advanceLifts();
-    tellLifts();
+    notifyLifts();
     releaseHolders();
     advanceWanderers();
     std::vector<std::string> ids;

@@ -80,7 +80,7 @@ struct Run {
         return names;
     }
     void list(std::size_t room);
-    void tellLoads();
+    void notifyLoads();
     bool readIfDue(SensorOfRun& sensor) const;
 };
 
@@ -103,7 +103,7 @@ void Run::list(std::size_t room) {
 }
 
 /// Lets each room know the weights of all, as people and robots go from one to another.
-void Run::tellLoads() {
+void Run::notifyLoads() {
     if (rooms.size() < 2) return;
     std::map<std::string, double> all;
     for (const Room& room : rooms) all.insert(room.field.loads().begin(), room.field.loads().end());
@@ -188,7 +188,7 @@ class Floors : public RoleService {
   public:
     explicit Floors(Run run) : run_(std::move(run)) {
         for (std::size_t room = 0; room < run_.rooms.size(); ++room) run_.list(room);
-        run_.tellLoads();
+        run_.notifyLoads();
         for (auto& each : run_.sensors) run_.readIfDue(each.second);
     }
     [[nodiscard]] std::string_view verb() const override { return "FLOOR"; }
@@ -207,12 +207,12 @@ class Floors : public RoleService {
             const std::int64_t changes = each.simulation->world().changes();
             if (std::exchange(each.changes, changes) == changes) continue;
             run_.list(room);
-            run_.tellLoads();
+            run_.notifyLoads();
         }
         for (auto& [id, sensor] : run_.sensors) {
             if (run_.readIfDue(sensor))
                 for (FloorClient* const client : clients_) client->hear(id, sensor);
-            tellStates(id, sensor);
+            notifyStates(id, sensor);
         }
     }
 
@@ -230,20 +230,20 @@ class Floors : public RoleService {
 
   private:
     /// Raises the events of the run. A weight is told once it differs by a kilogram.
-    void tellStates(const std::string& id, SensorOfRun& sensor) {
+    void notifyStates(const std::string& id, SensorOfRun& sensor) {
         const double weight = std::round(sensor.reading.kilograms());
         if (sensor.reading.is_occupied != sensor.was_occupied) {
             sensor.was_occupied = sensor.reading.is_occupied;
-            tell(id, sensor.room, "occupied", sensor.was_occupied ? "1" : "0");
+            notify(id, sensor.room, "occupied", sensor.was_occupied ? "1" : "0");
         }
         if (weight != sensor.told) {
             sensor.told = weight;
-            tell(id, sensor.room, "weight", formatDouble(weight));
+            notify(id, sensor.room, "weight", formatDouble(weight));
         }
     }
-    void tell(const std::string& id, std::size_t room, const char* key, std::string value) {
+    void notify(const std::string& id, std::size_t room, const char* key, std::string value) {
         const std::string prefix = run_.rooms[room].id + "/";
-        run_.rooms[room].simulation->events().tell(
+        run_.rooms[room].simulation->events().notify(
             {.kind = EventKind::State,
              .time = run_.now(),
              .id = id.starts_with(prefix) ? id.substr(prefix.size()) : id,

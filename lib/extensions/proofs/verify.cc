@@ -62,14 +62,14 @@ void verifyGuards(const CommonOptions& common, const Goal& goal, const Scene& sc
                          std::to_string(check.bound) + " are needed in any poses");
     const std::string gap =
         count == check.bound ? "proven fewest" : "gap " + lasersText(count - check.bound);
-    tell(common, "arrange",
-         "the layout sees the floor of " + formatFixed(check.area, 2) + " m2 but for " + missed +
-             " by " + lasersText(count) + "; at least " + std::to_string(check.bound) +
-             (check.bound == 1 ? " is" : " are") + " needed in any poses (" + gap +
-             "): verified (witnesses: " + std::to_string(certificate.witnesses.size()) +
-             ", trees: " + std::to_string(check.trees) +
-             ", leaves: " + std::to_string(check.leaves) +
-             ", parts of the floor: " + std::to_string(check.cells) + ")");
+    report(common, "arrange",
+           "the layout sees the floor of " + formatFixed(check.area, 2) + " m2 but for " + missed +
+               " by " + lasersText(count) + "; at least " + std::to_string(check.bound) +
+               (check.bound == 1 ? " is" : " are") + " needed in any poses (" + gap +
+               "): verified (witnesses: " + std::to_string(certificate.witnesses.size()) +
+               ", trees: " + std::to_string(check.trees) +
+               ", leaves: " + std::to_string(check.leaves) +
+               ", parts of the floor: " + std::to_string(check.cells) + ")");
 }
 
 FloorWeights weightsIn(const Environment& room, const Goal& goal) {
@@ -117,13 +117,13 @@ void verify(const TaskInput& task, const Goal& goal) {
     const double gap = bound > 0 ? std::max(0.0, (bound - checked.found) / bound) : 0;
     const std::string times =
         goal.redundancy > 1 ? ", each by " + std::to_string(goal.redundancy) + " lasers" : "";
-    tell(task.common, "arrange",
-         "the layout sees " + text(checked.found) + times + "; in any poses " +
-             std::to_string(checked.sensors) +
-             (checked.sensors == 1 ? " laser sees" : " lasers see") + " at most " + text(bound) +
-             " of " + text(checked.floor) + " (gap " + percentText(gap) +
-             "): verified (boxes: " + std::to_string(checked.check.boxes) +
-             ", tuples: " + std::to_string(checked.check.tuples) + ")");
+    report(task.common, "arrange",
+           "the layout sees " + text(checked.found) + times + "; in any poses " +
+               std::to_string(checked.sensors) +
+               (checked.sensors == 1 ? " laser sees" : " lasers see") + " at most " + text(bound) +
+               " of " + text(checked.floor) + " (gap " + percentText(gap) +
+               "): verified (boxes: " + std::to_string(checked.check.boxes) +
+               ", tuples: " + std::to_string(checked.check.tuples) + ")");
 }
 
 class VerifyOptions : public OptionGroup {

@@ -201,11 +201,11 @@ class RadioClient : public ClientRole {
             line.append(name).append(" from=").append(from).append(" margin=");
             line.append(formatFixed(*margin, 1)).append(" text=").append(text).append("\n");
             for (RadioClient* const client : clients_) client->hear(name, line);
-            room.simulation->events().tell({.kind = EventKind::State,
-                                            .time = run_.now(),
-                                            .id = receiver.id,
-                                            .other = "heard",
-                                            .text = std::to_string(receiver.heard)});
+            room.simulation->events().notify({.kind = EventKind::State,
+                                              .time = run_.now(),
+                                              .id = receiver.id,
+                                              .other = "heard",
+                                              .text = std::to_string(receiver.heard)});
         }
     }
 

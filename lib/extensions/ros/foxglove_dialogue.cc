@@ -156,7 +156,7 @@ web::WebMessage FoxgloveDialogue::write(std::uint32_t key, const RosFeed::Entry&
     return {.head = std::move(head), .body = message.cdr(), .is_text = false};
 }
 
-void FoxgloveDialogue::tell(Level level, const std::string& text) {
+void FoxgloveDialogue::report(Level level, const std::string& text) {
     JsonWriter json;
     json.beginObject().key("op").value("status").key("level").value(static_cast<int>(level));
     json.key("message").value(text).endObject();
@@ -198,9 +198,9 @@ void FoxgloveDialogue::receive(std::string_view message, bool is_text) {
         constexpr char kMessage = 1, kCall = 2;
         if (message.starts_with(kMessage)) return obeyMessage(message.substr(1));
         if (message.starts_with(kCall)) return callService(message.substr(1));
-        tell(Level::Error, "this opcode is not served");
+        report(Level::Error, "this opcode is not served");
     } catch (const FormatError& error) {
-        tell(Level::Error, error.diagnostics().front().message);
+        report(Level::Error, error.diagnostics().front().message);
     }
 }
 
@@ -219,11 +219,11 @@ void FoxgloveDialogue::obeyText(std::string_view text) {
          {"unsubscribeConnectionGraph", &Self::unwatchGraph},
          {"fetchAsset", &Self::fetchAsset}}};
     const std::optional<Json> request = parseClientJson(text);
-    if (!request || !request->is_object()) return tell(Level::Error, "this is no JSON object");
+    if (!request || !request->is_object()) return report(Level::Error, "this is no JSON object");
     const std::string name = textOf(member(*request, "op"));
     const auto* const op =
         std::find_if(kOps.begin(), kOps.end(), [&](const Op& one) { return one.name == name; });
-    if (op == kOps.end()) return tell(Level::Error, excerpt(name) + " is not served");
+    if (op == kOps.end()) return report(Level::Error, excerpt(name) + " is not served");
     (this->*op->obey)(*request);
 }
 
@@ -232,16 +232,16 @@ void FoxgloveDialogue::subscribeAll(const Json& request) {
         const auto key = numberOf(member(one, "id")), channel = numberOf(member(one, "channelId"));
         const auto topic = feed().entries().find(channel.value_or(0));
         if (!key || topic == feed().entries().end() || !advertised_.contains(topic->first)) {
-            tell(Level::Error, "a subscription to an unknown channel");
+            report(Level::Error, "a subscription to an unknown channel");
             continue;
         }
         if (readsElsewhere(topic->first, *key)) {
-            tell(Level::Warning, "another subscription has this channel");
+            report(Level::Warning, "another subscription has this channel");
             continue;
         }
         const std::size_t depth = topic->second.channel.quality.depth;
         if (!subscribe(*key, {.topic = topic->first, .depth = depth}))
-            return tell(Level::Error, "too many subscriptions");
+            return report(Level::Error, "too many subscriptions");
     }
 }
 
@@ -257,9 +257,9 @@ void FoxgloveDialogue::addChannels(const Json& request) {
                           encoding = textOf(member(one, "encoding")),
                           schema = textOf(member(one, "schemaName"));
         if (!id || (encoding != kJson && encoding != kCdr)) {
-            tell(Level::Error, "a channel needs an id, and the encoding json or cdr");
+            report(Level::Error, "a channel needs an id, and the encoding json or cdr");
         } else if (channels_.size() >= kMaxChannels) {
-            return tell(Level::Error, "too many channels");
+            return report(Level::Error, "too many channels");
         } else {
             const auto type = rosTypeNamed(schema);
             const bool is_read = type && input(topic, *type) != nullptr;
@@ -281,20 +281,20 @@ void FoxgloveDialogue::obeyMessage(std::string_view payload) {
     const auto [topic, type, is_json] = channel->second;
     if (!type) {
         channels_.erase(channel);
-        return tell(Level::Warning, "no messages of this type are read from " + topic);
+        return report(Level::Warning, "no messages of this type are read from " + topic);
     }
     const RosChannel* const to = input(topic, *type);
-    if (to == nullptr) return tell(Level::Error, "the topic " + excerpt(topic) + " is gone");
+    if (to == nullptr) return report(Level::Error, "the topic " + excerpt(topic) + " is gone");
     if (!is_json) return orders().obey(*to, payload);
     const std::optional<Json> json = parseClientJson(payload);
-    if (!json) return tell(Level::Error, "a message to " + topic + " is no JSON");
+    if (!json) return report(Level::Error, "a message to " + topic + " is no JSON");
     orders().obey(*to, rosMessage(*type, *json));
 }
 
 void FoxgloveDialogue::callService(std::string_view payload) {
     const auto service = takeNumber(payload), call = takeNumber(payload),
                length = takeNumber(payload);
-    if (!length || *length > payload.size()) return tell(Level::Error, "a call that is cut off");
+    if (!length || *length > payload.size()) return report(Level::Error, "a call that is cut off");
     const std::string encoding(payload.substr(0, *length));
     const auto fail = [this, service, call](std::string_view why) {
         JsonWriter json;
@@ -396,20 +396,20 @@ void FoxgloveDialogue::setParameters(const Json& request) {
         const std::string name = textOf(member(one, "name"));
         const RosSetting setting = settingOf(state(), name, member(one, "value"));
         if (!setting.refusal.empty()) {
-            tell(Level::Error, setting.refusal);
+            report(Level::Error, setting.refusal);
             if (!id.empty()) sendParameters({name}, id);
             continue;
         }
         // PAUSE and RESUME themselves do not need it.
         if (!orders().hasToken()) {
-            tell(Level::Error, excerpt(name) + " needs the token of this run: ?token=x");
+            report(Level::Error, excerpt(name) + " needs the token of this run: ?token=x");
             if (!id.empty()) sendParameters({name}, id);
             continue;
         }
-        if (!orders().mayRequest()) return tell(Level::Error, "too many parameters at once");
+        if (!orders().mayRequest()) return report(Level::Error, "too many parameters at once");
         names.insert(name);
         orders().request(setting.request, [this, name, id](bool is_done, std::string_view text) {
-            if (!is_done) tell(Level::Error, std::string(text));
+            if (!is_done) report(Level::Error, std::string(text));
             if (!id.empty()) sendParameters({name}, id);
         });
     }
@@ -434,7 +434,7 @@ void FoxgloveDialogue::unwatchParameters(const Json& request) {
 
 void FoxgloveDialogue::fetchAsset(const Json& request) {
     const auto id = numberOf(member(request, "requestId"));
-    if (!id) return tell(Level::Error, "an asset needs a requestId");
+    if (!id) return report(Level::Error, "an asset needs a requestId");
     const auto answer = [this, id = *id](const std::shared_ptr<const std::string>& bytes,
                                          std::string_view why) {
         std::string head = binary(FoxgloveOpcode::Asset);

@@ -53,7 +53,7 @@ class FoxgloveDialogue final : public RosDialogue {
 
     web::WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
                           const RosMessage& message) override;
-    void tell(Level level, const std::string& text) override;
+    void report(Level level, const std::string& text) override;
     void topicsChanged() override {
         advertise();
         sendGraph(false);

@@ -23,7 +23,8 @@ RosDialogue::RosDialogue(ServerState& state, RosFeed& feed, std::string peer)
     : state_(&state),
       feed_(&feed),
       orders_(
-          state, [this](const std::string& error) { tell(Level::Error, error); }, std::move(peer)) {
+          state, [this](const std::string& error) { report(Level::Error, error); },
+          std::move(peer)) {
     feed.enter();
     version_ = feed.version();
 }

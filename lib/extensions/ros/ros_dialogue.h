@@ -68,7 +68,7 @@ class RosDialogue : public web::WebDialogue {
     virtual web::WebMessage write(std::uint32_t key, const RosFeed::Entry& topic,
                                   const RosMessage& message) = 0;
     /// Reports a failure that answers no request.
-    virtual void tell(Level level, const std::string& text) = 0;
+    virtual void report(Level level, const std::string& text) = 0;
     /// Call after topics have come or gone. Subscriptions to removed topics are already gone.
     virtual void topicsChanged() = 0;
 

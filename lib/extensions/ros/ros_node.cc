@@ -112,7 +112,7 @@ void RosNode::sync() {
             ++left_out_;
     }
     actions_->sync();
-    tellGraph();
+    notifyGraph();
 }
 
 void RosNode::add(std::uint32_t topic, const RosChannel& channel) {
@@ -130,7 +130,7 @@ void RosNode::add(std::uint32_t topic, const RosChannel& channel) {
 }
 
 /// Names the node and its topics, for `ros2 node list`.
-void RosNode::tellGraph() {
+void RosNode::notifyGraph() {
     std::vector<DdsGuid> readers, writers;
     for (const auto& [topic, end] : ends_) {
         (end.is_input ? readers : writers).push_back(participant_->guid(end.number));

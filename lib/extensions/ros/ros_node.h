@@ -65,7 +65,7 @@ class RosNode {
     void addServices();
     void sync();
     void add(std::uint32_t topic, const RosChannel& channel);
-    void tellGraph();
+    void notifyGraph();
     void lookForReaders();
     void send();
     void takeOrders();

@@ -147,11 +147,11 @@ void RosOrders::take(const std::vector<RosTrack>& tracks, ServerState& state) {
         if (!(std::abs(x) < kFarthest) || !(std::abs(y) < kFarthest))
             return tell_("the place of track " + name + " must be numbers");
         const double time = static_cast<double>(track.time) * kNanosecond;
-        if (!simulation.tracks().tell({.told = now,
-                                       .time = track.time == 0 ? seconds(now) : time,
-                                       .track = name,
-                                       .kind = track.kind,
-                                       .place = track.place}))
+        if (!simulation.tracks().report({.told = now,
+                                         .time = track.time == 0 ? seconds(now) : time,
+                                         .track = name,
+                                         .kind = track.kind,
+                                         .place = track.place}))
             return tell_("too many tracks are told");
     }
 }

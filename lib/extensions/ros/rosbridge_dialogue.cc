@@ -188,7 +188,7 @@ web::WebMessage RosbridgeDialogue::publication(const std::string& name, Form for
     return {.head = std::move(head), .body = message.cdr(), .is_text = false};
 }
 
-void RosbridgeDialogue::tell(Level level, const std::string& text, const std::string& id) {
+void RosbridgeDialogue::report(Level level, const std::string& text, const std::string& id) {
     constexpr std::array<const char*, 3> kLevels{"info", "warning", "error"};
     JsonWriter json;
     json.beginObject().key("op").value("status");
@@ -216,17 +216,17 @@ void RosbridgeDialogue::receive(std::string_view message, bool is_text) {
                                               {"auth", &Self::ignore}}};
     // The world may have changed since the last step.
     feed().sync();
-    if (!is_text) return tell(Level::Error, "requests are JSON, in messages of text");
+    if (!is_text) return report(Level::Error, "requests are JSON, in messages of text");
     const std::optional<Json> request = parseClientJson(message);
-    if (!request || !request->is_object()) return tell(Level::Error, "this is no JSON object");
+    if (!request || !request->is_object()) return report(Level::Error, "this is no JSON object");
     const std::string name = wordOf(*request, "op"), id = idOf(*request);
     const auto* const op =
         std::find_if(kOps.begin(), kOps.end(), [&](const Op& one) { return one.name == name; });
-    if (op == kOps.end()) return tell(Level::Error, "op " + excerpt(name) + " is not served", id);
+    if (op == kOps.end()) return report(Level::Error, "op " + excerpt(name) + " is not served", id);
     try {
         (this->*op->obey)(*request);
     } catch (const FormatError& error) {
-        tell(Level::Error, error.diagnostics().front().message, id);
+        report(Level::Error, error.diagnostics().front().message, id);
     }
 }
 
@@ -238,17 +238,17 @@ void RosbridgeDialogue::subscribeTo(const Json& request) {
                       form = wordOf(request, "compression");
     const bool is_new = !wishes_.contains(topic);
     if (is_new && wishes_.size() >= kMaxWishes)
-        return tell(Level::Error, "too many subscriptions", id);
+        return report(Level::Error, "too many subscriptions", id);
     if (!is_new && wishes_.at(topic).count() >= kMaxIds)
-        return tell(Level::Error, "too many subscriptions", id);
+        return report(Level::Error, "too many subscriptions", id);
     if (const auto type = rosTypeNamed(wordOf(request, "type")))
         for (const std::uint32_t number : feed().numbersOf(topic)) {
             const RosChannel& channel = feed().entries().at(number).channel;
             if (!channel.isInput() && channel.type != *type)
-                return tell(Level::Error,
-                            excerpt(topic) + " is of type " + std::string(nameOf(channel.type)) +
-                                ", not " + std::string(nameOf(*type)),
-                            id);
+                return report(Level::Error,
+                              excerpt(topic) + " is of type " + std::string(nameOf(channel.type)) +
+                                  ", not " + std::string(nameOf(*type)),
+                              id);
         }
     Wish& wish = wishes_[topic];
     const double wait = figureOf(request, "throttle_rate", kMaxMilliseconds);
@@ -286,7 +286,7 @@ void RosbridgeDialogue::apply(const std::string& topic, const Wish& wish, bool i
         if (subscription.depth == 0) subscription.depth = entry.channel.quality.depth;
         if (!is_new && adjust(number, subscription)) continue;
         if (!subscribe(number, std::move(subscription)))
-            tell(Level::Error, "too many subscriptions");
+            report(Level::Error, "too many subscriptions");
     }
 }
 
@@ -326,12 +326,12 @@ void RosbridgeDialogue::advertise(const Json& request) {
     if (topic.starts_with(kRepublisher)) return;
     const auto type = rosTypeNamed(wordOf(request, "type"));
     if (!type || input(topic, *type) == nullptr)
-        return tell(
+        return report(
             Level::Error,
             "no messages " + excerpt(wordOf(request, "type")) + " are read from " + excerpt(topic),
             id);
     if (advertised_.size() >= kMaxAdvertised && !advertised_.contains(topic))
-        return tell(Level::Error, "too many topics are advertised", id);
+        return report(Level::Error, "too many topics are advertised", id);
     advertised_[topic] = *type;
 }
 
@@ -359,7 +359,7 @@ void RosbridgeDialogue::publish(const Json& request) {
         }
     }
     if (channel == nullptr)
-        return tell(Level::Error, "no messages are read from " + excerpt(topic), idOf(request));
+        return report(Level::Error, "no messages are read from " + excerpt(topic), idOf(request));
     orders().obey(*channel, rosMessage(channel->type, message));
 }
 
@@ -432,7 +432,7 @@ void RosbridgeDialogue::cancelGoal(const Json& request) {
     });
     const std::string why = found == goals_.end() ? "this goal is not under way"
                                                   : orders().cancel(std::string(found->first));
-    if (!why.empty()) tell(Level::Error, why, id);
+    if (!why.empty()) report(Level::Error, why, id);
 }
 
 /// Cancels the goals of the action that a service of ROS 2 names. \returns false for other services
@@ -446,7 +446,7 @@ bool RosbridgeDialogue::cancelAll(const std::string& service) {
     for (const auto& [robot, goal] : goals_)
         if (service.starts_with(absolute(goal.action) + "/")) robots.push_back(robot);
     for (const std::string& robot : robots)
-        if (const std::string why = orders().cancel(robot); !why.empty()) tell(Level::Error, why);
+        if (const std::string why = orders().cancel(robot); !why.empty()) report(Level::Error, why);
     return true;
 }
 
@@ -457,7 +457,7 @@ void RosbridgeDialogue::beginTransforms(const std::string& id, const std::string
     if (refusal.empty())
         transform_actions_[id] = action;
     else if (action.empty())
-        tell(Level::Error, "a goal of " + std::string(kRepublisher) + ": " + refusal);
+        report(Level::Error, "a goal of " + std::string(kRepublisher) + ": " + refusal);
     else
         answerGoal({.id = JsonWriter().value(id).take(), .action = action}, kRefused, refusal);
 }
@@ -478,7 +478,7 @@ bool RosbridgeDialogue::publishTransforms(const std::string& topic, const Json& 
     return true;
 }
 
-void RosbridgeDialogue::tellTransforms(const std::string& id, const std::string& feedback) {
+void RosbridgeDialogue::notifyTransforms(const std::string& id, const std::string& feedback) {
     const std::string text_id = JsonWriter().value(id).take(), &action = transform_actions_[id];
     JsonWriter json;
     json.beginObject();
@@ -539,7 +539,7 @@ void RosbridgeDialogue::answerGoal(const Goal& goal, int status, const std::stri
     sendText(json.take() + idMember(goal.id) + '}');
 }
 
-void RosbridgeDialogue::tellProgress(const std::string& robot, Goal& goal) {
+void RosbridgeDialogue::notifyProgress(const std::string& robot, Goal& goal) {
     const auto progress = orders().progress(robot);
     if (!progress) return;
     constexpr double kStanding = 0.01;
@@ -572,11 +572,11 @@ void RosbridgeDialogue::stepped() {
     RosDialogue::stepped();
     if (hasAnswers()) return;
     transforms_.stepped([this](const std::string& id, const std::string& feedback) {
-        tellTransforms(id, feedback);
+        notifyTransforms(id, feedback);
     });
     const SimTime now = state().simulation().world().time();
     for (auto& [robot, goal] : goals_)
-        if (goal.is_watched && now - goal.told >= kPeriod) tellProgress(robot, goal);
+        if (goal.is_watched && now - goal.told >= kPeriod) notifyProgress(robot, goal);
 }
 
 // Services.

@@ -59,8 +59,8 @@ class RosbridgeDialogue final : public RosDialogue {
                                        const RosMessage& message);
     std::vector<web::WebMessage> publications(const std::string& name, const Wish::Ids& ids,
                                               const RosMessage& message);
-    void tell(Level level, const std::string& text) override { tell(level, text, ""); }
-    void tell(Level level, const std::string& text, const std::string& id);
+    void report(Level level, const std::string& text) override { report(level, text, ""); }
+    void report(Level level, const std::string& text, const std::string& id);
     void topicsChanged() override;
 
     void subscribeTo(const Json& request);
@@ -76,10 +76,10 @@ class RosbridgeDialogue final : public RosDialogue {
     void endGoal(const std::string& robot, std::int64_t number, RosGoalEnd end,
                  const std::string& why);
     void answerGoal(const Goal& goal, int status, const std::string& error);
-    void tellProgress(const std::string& robot, Goal& goal);
+    void notifyProgress(const std::string& robot, Goal& goal);
     void beginTransforms(const std::string& id, const std::string& action, const Json& arguments);
     bool publishTransforms(const std::string& topic, const Json& message);
-    void tellTransforms(const std::string& id, const std::string& feedback);
+    void notifyTransforms(const std::string& id, const std::string& feedback);
     std::string republish(const Json& arguments);
     void ignore(const Json& /*request*/) {}
     void apply(const std::string& topic, const Wish& wish, bool is_new = true);

@@ -60,8 +60,8 @@ TEST(WebFrames, TellWhereEverythingIs) {
 TEST(WebFrames, HaveTheTracksThatAreToldNow) {
     Watched world;
     EXPECT_FALSE(has(world.next(), "tracks"));
-    world.simulation.tracks().tell({.track = "7", .place = {1.25, -0.5}});
-    world.simulation.tracks().tell({.source = "hub", .track = "a", .place = {0, 1}});
+    world.simulation.tracks().report({.track = "7", .place = {1.25, -0.5}});
+    world.simulation.tracks().report({.source = "hub", .track = "a", .place = {0, 1}});
     EXPECT_TRUE(has(world.next(), ",\"tracks\":[[\"7\",1250,-500],[\"hub/a\",0,1000]],"));
     world.step(11);
     EXPECT_FALSE(has(world.next(), "tracks"));

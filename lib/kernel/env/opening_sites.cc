@@ -187,7 +187,7 @@ std::optional<OpeningSite> OpeningSites::byPoint(const Element& opening, const L
         return siteAround(line, along(line, at), record);
     };
     const auto site = nearest(at, allowed, off, site_on);
-    if (!site) tellNearest(opening, "at", at, lines, allowed);
+    if (!site) reportNearest(opening, "at", at, lines, allowed);
     return site;
 }
 
@@ -222,13 +222,13 @@ std::optional<OpeningSite> OpeningSites::byEnds(const Element& opening, const Li
         return OpeningSite{line, low, high};
     };
     const auto site = nearest(middle, allowed, off, site_on);
-    if (!site) tellNearest(opening, "from", middle, lines, allowed);
+    if (!site) reportNearest(opening, "from", middle, lines, allowed);
     return site;
 }
 
 template <typename Allowed>
-void OpeningSites::tellNearest(const Element& opening, std::string_view key, Point2 p,
-                               const Lines& lines, Allowed allowed) const {
+void OpeningSites::reportNearest(const Element& opening, std::string_view key, Point2 p,
+                                 const Lines& lines, Allowed allowed) const {
     double nearest = std::numeric_limits<double>::infinity();
     std::size_t nearest_line = 0;
     const auto look = [&](std::span<const std::uint32_t> cell) {

@@ -76,8 +76,8 @@ class OpeningSites {
     [[nodiscard]] std::optional<OpeningSite> nearest(Point2 p, Allowed allowed, Off off,
                                                      SiteOn site_on) const;
     template <typename Allowed>
-    void tellNearest(const Element& opening, std::string_view key, Point2 p, const Lines& lines,
-                     Allowed allowed) const;
+    void reportNearest(const Element& opening, std::string_view key, Point2 p, const Lines& lines,
+                       Allowed allowed) const;
 
     std::span<const Element> elements_;
     const WallPlan& plan_;

@@ -231,7 +231,7 @@ Document readRosMap(std::string_view yaml, const std::string& name, const Import
     out.source(path);
     if (const auto way = wayFromSurvey(header.map_from_grid.position)) {
         header.map_from_grid.position = header.map_from_grid.position - *way;
-        out.tell(surveyText(*way, "map"));
+        out.report(surveyText(*way, "map"));
     }
     const CellMap map = readCells(header, path, name, options, out);
     writeCellMap(map, {path, "check `negate` and `free_thresh` of the map"}, options, out);

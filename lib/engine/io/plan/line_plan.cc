@@ -324,8 +324,8 @@ class LinePlan {
     void note(const ImportOptions& options, ImportRecords& out) const {
         warnOfLost(options, out);
         if (drawn_doors_ > 0)
-            out.tell("leaves and swings of " + countText(drawn_doors_, "door") +
-                     " among the walls close no room");
+            out.report("leaves and swings of " + countText(drawn_doors_, "door") +
+                       " among the walls close no room");
         const auto windows = static_cast<std::size_t>(
             std::count_if(openings_.begin(), openings_.end(),
                           [](const PlanOpening& opening) { return opening.is_window; }));
@@ -430,11 +430,11 @@ void LayerSorter::note(ImportRecords& out) const {
     for (std::size_t use = 0; use < Things; ++use)
         if (!counts_[use].empty()) out.note(kTitles[use] + listText(counts_[use]));
     if (!dashed_.empty())
-        out.tell("dashed lines close no room, as those of axes and of edges above: " +
-                 listText(dashed_) + "; --wall-layer takes those of a layer");
+        out.report("dashed lines close no room, as those of axes and of edges above: " +
+                   listText(dashed_) + "; --wall-layer takes those of a layer");
     if (!counts_[Things].empty())
-        out.tell("layers left out because their names are not those of walls: " +
-                 listText(counts_[Things]) + "; --wall-layer takes others");
+        out.report("layers left out because their names are not those of walls: " +
+                   listText(counts_[Things]) + "; --wall-layer takes others");
 }
 
 void LayerSorter::warnOfGlobs(ImportRecords& out) const {
@@ -493,7 +493,7 @@ PlanOutcome writeLinePlan(LayerSorter::Sorted shapes, const LayerSorter& sorter,
         for (const PlanPath& path : shapes.walls)
             if (path.thickness > 0 && !shapes.sizes) thick.insert(wholeMicrometres(path.thickness));
         if (!thick.empty())
-            out.tell(
+            out.report(
                 "lines with a width are walls of that thickness: " + formatDouble(*thick.begin()) +
                 (thick.size() == 1 ? "" : " to " + formatDouble(*thick.rbegin())) + " m");
         LinePlan plan(std::move(shapes), name, options, drawing, out);

@@ -22,7 +22,7 @@ constexpr std::string_view kFolder = "/mesh/";
 
 /// The file, or null.
 std::unique_ptr<HandedFile> ask(std::string_view name) {
-    tell(ConfinedAnswer::WantsFile, name);
+    report(ConfinedAnswer::WantsFile, name);
     const HandedOver file = receiveFile();
     if (file.fd < 0) return nullptr;
     return std::make_unique<HandedFile>(file.fd, file.size, true);

@@ -105,22 +105,22 @@ void send(const char* bytes, std::size_t size) {
 
 /// Assimp reports an error after a failed allocation; other libraries end the program.
 [[noreturn]] void outOfMemory() {
-    tell(ConfinedAnswer::OutOfMemory, {});
+    report(ConfinedAnswer::OutOfMemory, {});
     ::_exit(0);
 }
 
 std::size_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
 
-void tellWork(const Budget& work) {
+void reportWork(const Budget& work) {
     const std::uint64_t spent = work.limit() - work.left();
     std::array<char, sizeof spent> bytes{};
     std::memcpy(bytes.data(), &spent, sizeof spent);
-    tell(ConfinedAnswer::Work, {bytes.data(), bytes.size()});
+    report(ConfinedAnswer::Work, {bytes.data(), bytes.size()});
 }
 
 }  // namespace
 
-void tell(ConfinedAnswer kind, std::string_view bytes) {
+void report(ConfinedAnswer kind, std::string_view bytes) {
     std::array<char, kConfinedHead> head{};
     head[0] = static_cast<char>(kind);
     const std::uint64_t size = bytes.size();
@@ -177,18 +177,18 @@ int runConfined(int argc, char** argv, const ConfinedLimits& most,
         while (file.fd == STDIN_FILENO) {
             work = Budget(0, {number(words[4])});
             const std::string result = answer(file.size, work);
-            tellWork(work);
-            tell(ConfinedAnswer::Result, result);
+            reportWork(work);
+            report(ConfinedAnswer::Result, result);
             ::close(STDIN_FILENO);  // frees the number for the next file
             file = receiveFile();
         }
     } catch (const std::bad_alloc&) {
         outOfMemory();
     } catch (const TooMuchWork& error) {
-        tell(ConfinedAnswer::TooMuchWork, error.what());
+        report(ConfinedAnswer::TooMuchWork, error.what());
     } catch (const std::exception& error) {
-        tellWork(work);
-        tell(ConfinedAnswer::Error, error.what());
+        reportWork(work);
+        report(ConfinedAnswer::Error, error.what());
     }
     ::_exit(0);  // without destructors, which would only take time
 }

@@ -52,7 +52,7 @@ struct HandedOver {
 HandedOver receiveFile();
 
 /// Sends a whole message to the parent; exits if the parent is gone.
-void tell(ConfinedAnswer kind, std::string_view bytes);
+void report(ConfinedAnswer kind, std::string_view bytes);
 
 /// Reads all bytes on standard input.
 class MappedInput {
