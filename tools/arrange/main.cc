@@ -74,8 +74,8 @@ void writeLayout(const ArrangeCommand& command, const ArrangeToolOptions& option
 }
 
 /// Reports the layout, and unmet requests.
-void report(const ArrangeToolOptions& options, const ArrangeWork& work,
-            const Arrangement& arrangement, const ArrangeFindings& findings) {
+void reportLayout(const ArrangeToolOptions& options, const ArrangeWork& work,
+                  const Arrangement& arrangement, const ArrangeFindings& findings) {
     if (!options.common.quiet)
         writeLines("arrange", reportText(work, arrangement) +
                                   alternativesText(options.common.output, arrangement));
@@ -200,7 +200,7 @@ void runCommand(const ArrangeCommand& command, std::unique_ptr<JobResults> parts
     if (shard)
         writeDependencies(options.common, work.files);
     else
-        report(options, work, arrangement, findings);
+        reportLayout(options, work, arrangement, findings);
     if (signal != 0) endBySignal(signal);
     if (shard)
         logInfo(options.common, "arrange", "shard " + shard->text() + " is written");

@@ -309,10 +309,10 @@ EnvcOptions parseEnvcOptions(int argc, const char* const* argv) {
     addRoomOptions(line, options);
     line.group("Imports");
     addImportOptions(line, options.import);
-    const ImportExtensions importers(extensions().imports());
-    importers.declare(line, options.import);
     addStoreyOption(line, options.rules,
                     "of IFC also by number, from 1 for the lowest; default: all storeys");
+    const ImportExtensions importers(extensions().imports());
+    importers.declare(line, options.import);
     line.built(extensions().names());
     tool_extensions.declare(line);
     addSceneRules(line, options.rules);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the run, of records, replays and drawings, and of the server.
+// Options of the run, of records and replays, and of the server.
 #include "simrun/simrun_options.h"
 
 #include <algorithm>

@@ -220,7 +220,7 @@ std::unique_ptr<Progress> progressOf(Simulation& simulation, const SimrunOptions
 }
 
 /// Reports the length of a run and whether it kept up with the clock.
-void report(const Simulation& simulation, const SimrunOptions& options) {
+void reportEnd(const Simulation& simulation, const SimrunOptions& options) {
     const World& world = simulation.world();
     logInfo(options.common, "simrun",
             std::to_string(world.steps()) + " steps, t=" + formatSimTime(world.time()));
@@ -620,7 +620,7 @@ void serve(RunSite& site, const SimrunOptions& options, JunitFile& junit) {
             records[i]->recorder.end(rooms[i].simulation->world());
         options.bridges->commit(options.common);
         reportLosses(server, options);
-        report(simulation, options);
+        reportEnd(simulation, options);
         for (std::size_t i = 0; i < rooms.size(); ++i)
             if (const Replay* const replay = site.replay(i); replay != nullptr && replay->isCut())
                 warn(options.common, "simrun",

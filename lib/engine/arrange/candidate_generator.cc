@@ -101,7 +101,7 @@ struct CandidatePool::Data {
 
     /// Returns true for sites that are valid in all rooms but the first, too.
     bool isValidElsewhere(double height, Point2 place) {
-        if (rooms.empty() || !options.cases->needFreeFloor()) return true;
+        if (rooms.empty() || !options.cases->needsFreeFloorInAll()) return true;
         auto& others = other_validities[height];
         for (std::size_t i = others.size() + 1; i < rooms.size(); ++i)
             others.push_back(

@@ -84,7 +84,7 @@ class LayoutCases {
     }
     /// Returns true if a sensor stands on free floor of all sites; false: of the first one, and a
     /// sensor inside of a solid of another one is blind there.
-    [[nodiscard]] virtual bool needFreeFloor() const { return false; }
+    [[nodiscard]] virtual bool needsFreeFloorInAll() const { return false; }
 
     /// Tells the values of a layout, as a sentence without full stop.
     [[nodiscard]] virtual std::string finding(const CaseShares& values) const = 0;

@@ -60,39 +60,27 @@ void reportCost(const CoverageModel& model, std::span<const CountedView> /*views
 using Options = const ArrangeOptions&;
 
 constexpr Objective kObjectives[] = {
-    {.name = "coverage",
-     .option = "",
-     .is_asked = [](Options) { return true; },
-     .weights = floorWeights},
+    {.name = "coverage", .is_asked = [](Options) { return true; }, .weights = floorWeights},
     {.name = "weights",
-     .option = "--weight",
      .is_asked = [](Options options) { return !options.weights.isUniform(); },
      .weights = zoneWeights,
      .report = reportShare},
     {.name = "density",
-     .option = "--density",
      .is_asked = [](Options options) { return options.pixel_density > 0; },
      .limit = limitCamera},
     {.name = "redundancy",
-     .option = "--redundancy",
      .is_asked = [](Options options) { return options.redundancy > 1; },
      .report = reportShare},
     {.name = "rule",
-     .option = "",
      .is_asked = [](Options options) { return bool(options.cover_rule); },
      .report = reportShare},
     {.name = "demand",
-     .option = "",
      .is_asked = [](Options options) { return options.demand != nullptr; },
      .report = reportServed},
     {.name = "cases",
-     .option = "",
      .is_asked = [](Options options) { return options.cases != nullptr; },
      .report = reportCases},
-    {.name = "cost",
-     .option = "--budget",
-     .is_asked = [](Options) { return true; },
-     .report = reportCost}};
+    {.name = "cost", .is_asked = [](Options) { return true; }, .report = reportCost}};
 
 }  // namespace
 

@@ -24,7 +24,7 @@ class CoverageModel;
 
 /// A quantity that arrange optimises. To add one, write its functions and a row.
 struct Objective {
-    std::string_view name, option;
+    std::string_view name;
     bool (*is_asked)(const ArrangeOptions&);
     /// Computes a factor of each cell's weight, 0 where the cell does not count; null: 1.
     std::vector<double> (*weights)(const Target&, const ArrangeOptions&) = nullptr;

@@ -5,7 +5,7 @@
 //     class PointOptions final : public ImportGroup {
 //         void declare(CommandLine& line, ImportOptions& import) override {
 //             line.group("ARIA maps");
-//             line.flag("--points", import.own.edit<MapPoints>().are_obstacles, "...",
+//             line.flag("--points", import.own.edit<AriaPoints>().are_obstacles, "...",
 //                       Enters::History);
 //         }
 //     };

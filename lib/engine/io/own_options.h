@@ -2,9 +2,9 @@
 // Options that belong to extensions, in the middle of those of the core, which carries them without
 // knowledge of their types.
 //
-//     struct MapPoints { bool are_obstacles = false; };       // in the folder of the extension
-//     options.own.edit<MapPoints>().are_obstacles = true;     // where the command line is read
-//     if (options.own.get<MapPoints>().are_obstacles) ...     // in its importer
+//     struct AriaPoints { bool are_obstacles = false; };       // in the folder of the extension
+//     options.own.edit<AriaPoints>().are_obstacles = true;     // where the command line is read
+//     if (options.own.get<AriaPoints>().are_obstacles) ...     // in its importer
 #pragma once
 
 #include <any>

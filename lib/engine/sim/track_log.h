@@ -34,7 +34,7 @@ void appendTrackRow(std::string& out, const ToldTrack& track);
 /// The tracks told in one world, in their order.
 ///
 ///     TrackLog log;
-///     log.tell({.told = world.time(), .time = 1.5, .track = "3", .place = {1, 2}});
+///     log.report({.told = world.time(), .time = 1.5, .track = "3", .place = {1, 2}});
 ///     for (const ToldTrack* each : log.present(world.time())) …
 ///
 /// Memory is bounded: the last kKept positions, and the newest one of at most kMostTracks tracks.

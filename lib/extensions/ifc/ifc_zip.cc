@@ -45,9 +45,7 @@ uLong writeBytes(voidpf /*opaque*/, voidpf /*stream*/, const void* /*from*/, uLo
     return 0;
 }
 
-ZPOS64_T tellBytes(voidpf opaque, voidpf /*stream*/) {
-    return static_cast<ZipBytes*>(opaque)->at;
-}
+ZPOS64_T tellBytes(voidpf opaque, voidpf /*stream*/) { return static_cast<ZipBytes*>(opaque)->at; }
 
 long seekBytes(voidpf opaque, voidpf /*stream*/, ZPOS64_T offset, int origin) {
     auto& file = *static_cast<ZipBytes*>(opaque);

@@ -15,6 +15,7 @@ class UpOption final : public ImportGroup {
         line.group("Meshes and clouds");
         line.choice("--up", import.own.edit<meshes::UpAxis>().name, {"auto", "x", "y", "z"},
                     "upward axis of a mesh or a cloud", Enters::History);
+        line.essential({"--up"});
     }
 };
 

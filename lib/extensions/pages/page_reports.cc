@@ -56,8 +56,8 @@ class PageReports : public ReportGroup {
     }
 
   private:
-    PageCover cover_;  // with the name of the logo's file until take()
-    std::string paper_ = "a4", prices_, material_;
+    PageCover cover_;  // with the logo from take() on
+    std::string logo_, paper_ = "a4", prices_, material_;
     PriceList price_list_;
 };
 
@@ -71,7 +71,7 @@ void PageReports::declare(CommandLine& line) {
               Enters::Nothing);
     line.text("--author", "TEXT", cover_.author, "author on the cover of --report",
               Enters::Nothing);
-    line.file("--logo", "FILE", cover_.logo, "logo on the cover of --report, a PNG picture",
+    line.file("--logo", "FILE", logo_, "logo on the cover of --report, a PNG picture",
               Enters::Nothing);
     line.choice("--paper", paper_, {"a4", "letter"}, "sheets of --report (default a4)",
                 Enters::Nothing);
@@ -87,7 +87,7 @@ void PageReports::declare(CommandLine& line) {
 
 void PageReports::take(const std::string& report) {
     const bool is_page = !report.empty() && suffixOf(report) != "json";
-    if ((cover_.isGiven() || paper_ != "a4") && !is_page)
+    if ((cover_.isGiven() || !logo_.empty() || paper_ != "a4") && !is_page)
         throw UsageError(
             "--title, --project, --client, --author, --logo and --paper are about a page: give "
             "--report FILE.html or FILE.pdf");
@@ -97,7 +97,7 @@ void PageReports::take(const std::string& report) {
         throw UsageError("--material: stdout is for another product; give it a file");
     if (!material_.empty())
         static_cast<void>(outputFormat({}, material_, {"csv"}));  // rejects another suffix
-    if (!cover_.logo.empty()) cover_.logo = logoOf(cover_.logo);
+    if (!logo_.empty()) cover_.logo = logoOf(logo_);
     if (!prices_.empty()) price_list_ = readPrices(readAll(prices_), prices_);
 }
 

@@ -44,7 +44,7 @@ class OtherSites final : public LayoutCases {
         return number == 0 ? name_ : others_[number - 1].name;
     }
     [[nodiscard]] SiteCase siteIn(const ArrangeSite& site, std::size_t number) const override;
-    [[nodiscard]] bool needFreeFloor() const override { return true; }
+    [[nodiscard]] bool needsFreeFloorInAll() const override { return true; }
     [[nodiscard]] std::string finding(const CaseShares& values) const override;
     [[nodiscard]] std::vector<CaseRow> rows(const CaseShares& values) const override;
 
@@ -76,6 +76,9 @@ class MountingCases final : public LayoutCases {
         : LayoutCases(is_worst), tolerance_(tolerance), seeds_(std::move(seeds)) {}
     [[nodiscard]] std::string_view option() const override { return "--robust mounting"; }
     [[nodiscard]] std::size_t sites() const override { return kSearchedSamples; }
+    [[nodiscard]] std::string nameOf(std::size_t number) const override {
+        return "mounting " + std::to_string(number + 1);
+    }
     [[nodiscard]] std::unique_ptr<const PoseErrors> errorsIn(const Environment& room,
                                                              std::size_t index,
                                                              std::size_t number) const override;
@@ -98,6 +101,9 @@ class CrowdCases final : public LayoutCases {
         : LayoutCases(is_worst), people_(people), crowds_(std::move(crowds)) {}
     [[nodiscard]] std::string_view option() const override { return "--crowd"; }
     [[nodiscard]] std::size_t sites() const override { return kSearchedSamples; }
+    [[nodiscard]] std::string nameOf(std::size_t number) const override {
+        return "crowd " + std::to_string(number + 1);
+    }
     [[nodiscard]] SiteCase siteIn(const ArrangeSite& site, std::size_t number) const override;
     [[nodiscard]] std::string finding(const CaseShares& values) const override;
     [[nodiscard]] std::vector<CaseRow> rows(const CaseShares& values) const override;
