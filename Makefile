@@ -114,13 +114,13 @@ lint:
 
 install:
 	@$(MAKE) --no-print-directory $(BUILD)/configured
-	$(call build,$(BUILD)) --target tools manual completions
+	$(call build,$(BUILD)) --target tools manual schemas completions
 	DESTDIR="$(DESTDIR)" cmake --install $(BUILD) --prefix "$(prefix)"
 
 package:
 	@.ci/deps build package
 	@$(MAKE) --no-print-directory $(BUILD)/configured
-	$(call build,$(BUILD)) --target tools manual completions
+	$(call build,$(BUILD)) --target tools manual schemas completions
 	@.ci/package $(BUILD)
 
 source-package:

@@ -29,7 +29,7 @@ Option = Union[None, bool, int, float, str, os.PathLike[str], Sequence[Any]]
 class Object(Dict[str, Any]):
     """An object of JSON with its keys as attributes: ``report.coverage.exact``.
 
-    share/schemas describes them. Angles in JSON are in radians, and poses ``[x, y, z, heading, tilt, roll]``.
+    share/ispace/schemas describes them. Angles in JSON are in radians, and poses ``[x, y, z, heading, tilt, roll]``.
     """
 
     def __getattr__(self, key: str) -> Any:
@@ -47,7 +47,7 @@ class Figure(Object):
 
 
 class CoverageReport(Object):
-    """The report of ``coverage --json``; share/schemas/coverage.json describes its keys.
+    """The report of ``coverage --json``; share/ispace/schemas/coverage.json describes its keys.
 
     Keys that only some options or sensors cause are untyped attributes.
     """
