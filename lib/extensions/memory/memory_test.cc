@@ -121,14 +121,14 @@ TEST(Touches, BeginStayAndEnd) {
     for (int ms = 0; ms <= 2000; ms += 100) {
         // One tag is inside from 0.2 s on, but for a reading; the other for a moment.
         const bool is_in = ms >= 200 && ms <= 1000 && ms != 500;
-        notify(touches.moved(
+        tell(touches.moved(
             "a", is_in ? std::vector<const Volume*>{&volume} : std::vector<const Volume*>{},
             at(ms)));
         if (ms == 400) {
-            notify(touches.moved("b", {&volume}, at(ms)));
+            tell(touches.moved("b", {&volume}, at(ms)));
             EXPECT_EQ(touches.tagsIn("v"), (std::vector<std::string>{"a", "b"}));
         }
-        notify(touches.passed(at(ms)));
+        tell(touches.passed(at(ms)));
     }
     EXPECT_EQ(told, "aT0.200/0.000 bT0.400/0.000 aD0.700/0.500 bL0.700/0.000 aL1.300/0.800 ");
     EXPECT_TRUE(touches.tagsIn("v").empty());
