@@ -86,10 +86,22 @@ std::string reportFile(const CoverageToolOptions& options, const SiteInput& inpu
     return form->bytesOf(page, options.report);
 }
 
+/// Warns of options that are about cameras, where there are none.
+void warnOfCameras(const CoverageToolOptions& options, const SiteInput& input) {
+    for (const auto& scene : input.rooms())
+        for (const Sensor& sensor : scene->sensors)
+            if (sensor.is<Camera>()) return;
+    if (options.measure.density > 0)
+        warn(options.common, "coverage", "--density changes nothing: no sensor is a camera");
+    if (options.measure.parallax)
+        warn(options.common, "coverage", "--parallax changes nothing: no sensor is a camera");
+}
+
 void coverSite(CoverageToolOptions options, JunitFile& junit) {
     const SiteInput& input = leftToExit(readInput(options));
     fitOptions(options, input);
     warnOfImport(options.common, "coverage", input);
+    warnOfCameras(options, input);
     std::vector<std::string> files = input.files;
     if (!options.report.empty()) mustBeWritable(options.report);
     for (const ReportGroup::SideFile& beside : options.reports->files())
