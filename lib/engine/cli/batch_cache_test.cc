@@ -4,14 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/missed_files.h"
+#include "io/importers.h"
 #include "support/test_folder.h"
 
 namespace ispace {
@@ -94,12 +95,16 @@ TEST_F(BatchCacheTest, ComputesAgainIfAMissingFileAppears) {
     EXPECT_FALSE(reused());
 }
 
-TEST_F(BatchCacheTest, ComputesAgainForAnotherModelPath) {
+/// As an importer of an extension has them.
+std::vector<std::string> surroundings;
+
+TEST_F(BatchCacheTest, ComputesAgainInOtherSurroundings) {
+    addImportSurroundings([] { return surroundings; });
     EXPECT_EQ(computed(run_, job(), result()), 1);
-    ::setenv("GAZEBO_MODEL_PATH", "/models", 1);
+    surroundings = {"models in /models"};
     EXPECT_EQ(computed(run_, job(), result()), 1);
     EXPECT_EQ(computed(run_, job(), result()), 0);
-    ::unsetenv("GAZEBO_MODEL_PATH");
+    surroundings.clear();
     EXPECT_EQ(computed(run_, job(), result()), 1);
 }
 
