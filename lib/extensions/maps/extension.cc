@@ -13,7 +13,7 @@ namespace {
 
 class AriaOptions final : public ImportGroup {
     void declare(CommandLine& line, ImportOptions& import) override {
-        line.group("Maps of ARIA");
+        line.group("ARIA maps");
         line.flag("--points", import.own.edit<maps::AriaPoints>().are_obstacles,
                   "turn points of an ARIA map into obstacles", Enters::History);
     }

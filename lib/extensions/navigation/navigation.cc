@@ -106,7 +106,7 @@ class NavigationJudge : public OptionGroup {
         line.text("--robot", "ID", robot_, "robot that is judged (default: the only one)",
                   Enters::History);
         line.meters("--reach", reach_, kLeastReach, kMostReach,
-                    "distance from the goal at which it is reached (default 0.5)", Enters::History);
+                    "distance from the goal at which it is reached", Enters::History);
         line.meters("--way", way_, 0, kMostWay,
                     "length of the shortest way (default: that of the room without people)",
                     Enters::History);

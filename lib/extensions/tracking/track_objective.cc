@@ -26,11 +26,10 @@ class TrackObjective : public ObjectiveGroup {
             "for TIME (default wander:4,10min)",
             Enters::BaseNames);
         line.duration("--coast", loss_.coast, 0, kLongest,
-                      "time for which a tracker follows an unseen person (default 1s)",
-                      Enters::History);
+                      "time for which a tracker follows an unseen person", Enters::History);
         line.duration("--crossing", loss_.crossing, 0, kLongest,
                       "loss that a crossing counts as if no sensor sees the two people while they "
-                      "are within a metre of each other (default 5s)",
+                      "are within a metre of each other",
                       Enters::History);
     }
     [[nodiscard]] std::vector<std::shared_ptr<const Demand>> demandsIn(
