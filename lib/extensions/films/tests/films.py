@@ -13,7 +13,7 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data")
+DATA = os.path.join(os.environ["ISPACE_SOURCE_DIR"], "tests", "data")
 FPS, SECONDS = 8, 3
 
 
