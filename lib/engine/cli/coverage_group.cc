@@ -2,32 +2,17 @@
 #include "cli/coverage_group.h"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "base/error.h"
+#include "cli/group_members.h"
 
 namespace ispace {
 
 CoverageExtensions::CoverageExtensions(std::span<const CoverageRow> rows) {
-    members_.reserve(rows.size());
-    for (const CoverageRow& row : rows) {
-        if (row.make == nullptr)
-            missing_.push_back(row);
-        else
-            members_.push_back({std::string(row.extension), row.make()});
-    }
+    makeMembers(rows, members_, missing_);
 }
 
-void CoverageExtensions::declare(CommandLine& line) {
-    const auto before = static_cast<std::ptrdiff_t>(line.names().size());
-    for (const Member& member : members_) {
-        line.extension(member.extension);
-        member.group->declare(line);
-    }
-    line.extension("");
-    const std::vector<std::string> names = line.names();
-    options_.assign(names.begin() + before, names.end());
-}
+void CoverageExtensions::declare(CommandLine& line) { options_ = declareMembers(members_, line); }
 
 void CoverageExtensions::take(const CommandLine& line) const {
     for (const Member& member : members_) member.group->take(line);

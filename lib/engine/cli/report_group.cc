@@ -2,32 +2,17 @@
 #include "cli/report_group.h"
 
 #include <algorithm>
-#include <cstddef>
 
 #include "cli/common_options.h"
+#include "cli/group_members.h"
 
 namespace ispace {
 
 ReportExtensions::ReportExtensions(std::span<const ReportRow> rows) {
-    members_.reserve(rows.size());
-    for (const ReportRow& row : rows) {
-        if (row.make == nullptr)
-            missing_.push_back(row);
-        else
-            members_.push_back({std::string(row.extension), row.make()});
-    }
+    makeMembers(rows, members_, missing_);
 }
 
-void ReportExtensions::declare(CommandLine& line) {
-    const auto before = static_cast<std::ptrdiff_t>(line.names().size());
-    for (const Member& member : members_) {
-        line.extension(member.extension);
-        member.group->declare(line);
-    }
-    line.extension("");
-    const std::vector<std::string> names = line.names();
-    options_.assign(names.begin() + before, names.end());
-}
+void ReportExtensions::declare(CommandLine& line) { options_ = declareMembers(members_, line); }
 
 void ReportExtensions::take(const std::string& report) const {
     if (!report.empty()) {
