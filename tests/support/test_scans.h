@@ -5,16 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
+#include "support/test_triangles.h"
 #include "trace/flat_world.h"
 
 namespace ispace::testing {
 
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
-inline constexpr double kTouching = 1e-4;
 using Lines = std::vector<Segment2>;
 
 inline Directions scan(Angle first, Angle step, std::size_t beams) {

@@ -11,7 +11,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace {
-namespace {
+namespace arrange_cameras_test {
 
 constexpr int kColumns = 20, kRows = 15;
 constexpr double kWidth = 8, kDepth = 6;
@@ -306,5 +306,5 @@ TEST(ArrangeCameras, WithoutEnoughPixelsAnywhereSeeNothing) {
     EXPECT_FALSE(arranged(scene, groupsOf(scene, {"camera,fov=90"}, true), options).is_reached);
 }
 
-}  // namespace
+}  // namespace arrange_cameras_test
 }  // namespace ispace

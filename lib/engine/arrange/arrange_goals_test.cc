@@ -8,7 +8,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace arrange_goals_test {
 
 TEST(ArrangeGoals, AZoneIsAllThatCounts) {
     const Scene scene = roomScene();
@@ -379,5 +379,5 @@ TEST(ArrangeGoals, AllCellsAreNotAllOfTheFloor) {
         arranged(scene, groupsOf(scene, {"laser,range=99,fov=360"}, true), options).is_reached);
 }
 
-}  // namespace
+}  // namespace arrange_goals_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace arrangement_test {
 
 TEST(Arrangement, ResultIsWhatCoverageMeasures) {
     const Scene scene = roomScene();
@@ -282,5 +282,5 @@ TEST(Arrangement, WhatCannotBeIsSaid) {
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"laser"}), options), UnmetError);
 }
 
-}  // namespace
+}  // namespace arrangement_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "trace/ray_world.h"
 
 namespace ispace {
-namespace {
+namespace beam_cells_test {
 
 Laser laserOfSpec(const char* spec) {
     return std::get<Laser>(groupsOf(roomScene(), {spec}).front().model);
@@ -89,5 +89,5 @@ TEST(Judge, WithoutItTheBestPlaceOfTheLRoomLiesOutside) {
     EXPECT_EQ(scene.environment.indoor().locate(place()), Side::Outside);
 }
 
-}  // namespace
+}  // namespace beam_cells_test
 }  // namespace ispace

@@ -16,7 +16,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace candidate_pool_test {
 
 /// The candidates of one sensor in a scene.
 struct Pooled {
@@ -324,5 +324,5 @@ TEST(CandidatePool, IndoorTestKeepsTheSensorInTheRoom) {
     EXPECT_GT(misled.second, kept.second);
 }
 
-}  // namespace
+}  // namespace candidate_pool_test
 }  // namespace ispace

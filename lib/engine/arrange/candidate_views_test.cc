@@ -13,7 +13,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace candidate_views_test {
 
 using Random = std::mt19937_64;
 
@@ -389,5 +389,5 @@ TEST(CandidateViews, TheOrderInWhichSitesAreLookedAtDoesNotShow) {
     }
 }
 
-}  // namespace
+}  // namespace candidate_views_test
 }  // namespace ispace

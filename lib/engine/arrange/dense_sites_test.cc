@@ -12,7 +12,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace {
-namespace {
+namespace dense_sites_test {
 
 double nearestWall(const std::vector<Region>& floor, Point2 p) {
     double nearest = std::numeric_limits<double>::infinity();
@@ -187,5 +187,5 @@ TEST(FramePlaces, HangUnderTheBars) {
     EXPECT_THROW(framePlaces(hall, 0.001), UsageError);
 }
 
-}  // namespace
+}  // namespace dense_sites_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace exact_gain_test {
 
 const char* const kRoom =
     "ispace size=8,6\ndesk at=2,1 heading=30 size=1.2,0.8,0.7\ncube at=-2,-1 size=0.6,0.6,1\n"
@@ -218,5 +218,5 @@ TEST(ExactGain, WholeTurnsDoNotTurn) {
     for (std::size_t i = 0; i < turns.size(); ++i) EXPECT_EQ(gain.turns(i), turns[i]) << i;
 }
 
-}  // namespace
+}  // namespace exact_gain_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "geom/polygon.h"
 
 namespace ispace {
-namespace {
+namespace floor_tiles_test {
 
 Curve rectangle(double x, double y, double to_x, double to_y) {
     return curveOf({{x, y}, {to_x, y}, {to_x, to_y}, {x, to_y}});
@@ -76,5 +76,5 @@ TEST(FloorTiles, BoundCellsInReachOfAnyPoint) {
     EXPECT_NEAR(mostWithin(20, cells, grid), 3, 1e-9);
 }
 
-}  // namespace
+}  // namespace floor_tiles_test
 }  // namespace ispace

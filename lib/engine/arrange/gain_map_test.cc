@@ -7,7 +7,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace {
-namespace {
+namespace gain_map_test {
 
 Arrangement withGains(std::initializer_list<const char*> sensors, int redundancy = 1) {
     const Scene scene = roomScene();
@@ -56,5 +56,5 @@ TEST(GainMap, HoldsTheCandidatesOfTheSensorsKind) {
     EXPECT_LE(twice.gains[0].poses[0].value, 0.5);
 }
 
-}  // namespace
+}  // namespace gain_map_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace {
-namespace {
+namespace pose_free_bound_test {
 
 /// An empty room of 20 m x 20 m.
 Scene hall() { return roomScene("#env 1\nispace size=20,20\n"); }
@@ -233,5 +233,5 @@ TEST(MostFromAnyPlace, ABudgetBuysWhatSeesMostForItsCost) {
     EXPECT_EQ(maxFromAnyPlace(problem, in_view, most), 10 * (many + few));
 }
 
-}  // namespace
+}  // namespace pose_free_bound_test
 }  // namespace ispace

@@ -7,7 +7,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace redundant_sensors_test {
 
 /// Computes the least distance between two of the sensors, and from them to other points.
 double leastDistance(const Arrangement& arrangement, std::initializer_list<Point3> others = {}) {
@@ -82,5 +82,5 @@ TEST(IdleSensors, TheRestHasTheSameValue) {
     EXPECT_GT(found, 100U);
 }
 
-}  // namespace
+}  // namespace redundant_sensors_test
 }  // namespace ispace

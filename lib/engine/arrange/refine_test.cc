@@ -15,7 +15,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace refine_test {
 
 Laser laserOfRange(double range, double fov = 180) {
     Laser laser;
@@ -252,5 +252,5 @@ TEST(Refine, EndsWhenItIsToldTo) {
     EXPECT_TRUE(refined(scene, {}).poses.empty());
 }
 
-}  // namespace
+}  // namespace refine_test
 }  // namespace ispace

@@ -7,7 +7,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace {
-namespace {
+namespace sensor_group_test {
 
 TEST(SensorGroups, RefuseIdsThatAreTakenAndPlacesThatAreGiven) {
     const Scene scene = roomScene();
@@ -47,5 +47,5 @@ TEST(SensorGroups, FixedSensorsStayAndOthersAreFreed) {
     EXPECT_THROW(withoutPlaces(layout, unknown), UsageError);
 }
 
-}  // namespace
+}  // namespace sensor_group_test
 }  // namespace ispace

@@ -16,7 +16,7 @@
 #include "support/test_floor_plans.h"
 
 namespace ispace {
-namespace {
+namespace sites_test {
 
 Polygon squareAbout(Point2 p, double half) {
     return {p + Vec2{-half, -half}, p + Vec2{half, -half}, p + Vec2{half, half},
@@ -312,5 +312,5 @@ TEST(ReadSites, SaysWhereAndWhatIsWrong) {
     EXPECT_THROW(sitesOf(much), FormatError);
 }
 
-}  // namespace
+}  // namespace sites_test
 }  // namespace ispace

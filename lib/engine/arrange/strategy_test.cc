@@ -9,7 +9,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace {
-namespace {
+namespace strategy_test {
 
 TEST(Strategies, NamesAndOptionsAreDistinct) {
     std::set<std::string_view> names;
@@ -60,5 +60,5 @@ TEST(Strategies, ProposeFromTheirOptions) {
     EXPECT_EQ(proposed(Strategy::Grid).front().headings.size(), 5U);
 }
 
-}  // namespace
+}  // namespace strategy_test
 }  // namespace ispace

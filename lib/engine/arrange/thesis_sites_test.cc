@@ -14,7 +14,7 @@
 #include "support/test_paths.h"
 
 namespace ispace {
-namespace {
+namespace thesis_sites_test {
 
 Box2 boxOf(Point2 low, Point2 high) { return {low, high}; }
 
@@ -121,7 +121,7 @@ TEST(WallSites, SeeAroundTheCornerOfTheLRoom) {
     ASSERT_EQ(sites.size(), 12U);
     // The wall from (7, 1) to (1, 1) ends where the room goes on to the north.
     const auto found = std::find_if(sites.begin(), sites.end(), [](const Site& site) {
-        return distance(site.place, {3, 0.9}) < 1e-9;
+        return distance(site.place, Point2{3, 0.9}) < 1e-9;
     });
     ASSERT_NE(found, sites.end());
     expectHeadings(*found, {-90, -135, 180});
@@ -191,7 +191,7 @@ TEST(WallSites, AreOnBothSidesOfWallsWithinTheRoom) {
     // The walls above and below in two halves each; both sides of both pieces of the wall.
     ASSERT_EQ(sites.size(), (2U + 4U + 4U) * 2U);
     const auto found = std::find_if(sites.begin(), sites.end(), [](const Site& site) {
-        return distance(site.place, {-0.1, 2.0 / 3}) < 1e-9;
+        return distance(site.place, Point2{-0.1, 2.0 / 3}) < 1e-9;
     });
     ASSERT_NE(found, sites.end());
     // Its own side, and around its end at the door, towards the door first.
@@ -282,7 +282,7 @@ TEST(RandomPlace, FillsTheDiscEvenly) {
     int inner = 0, left = 0;
     for (std::uint64_t k = 0; k < kPlaces; ++k) {
         const Point2 place = randomPlaceAbout({2, -1}, 3, {7, "laser1"}, k);
-        const double radius = distance(place, {2, -1});
+        const double radius = distance(place, Point2{2, -1});
         ASSERT_LE(radius, 3 + 1e-12);
         inner += radius < 3 / std::sqrt(2) ? 1 : 0;
         left += place.x < 2 ? 1 : 0;
@@ -306,5 +306,5 @@ TEST(RandomPlace, DependsOnWhatItIsFor) {
     expectPlace(randomPlace(boxOf({5, -7}, {6, -6}), {1, "a"}, 0), {place.x + 5, place.y - 7});
 }
 
-}  // namespace
+}  // namespace thesis_sites_test
 }  // namespace ispace

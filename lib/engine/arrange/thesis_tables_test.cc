@@ -12,7 +12,7 @@
 #include "support/test_paths.h"
 
 namespace ispace {
-namespace {
+namespace thesis_tables_test {
 
 Scene sceneOf(const std::string& file) {
     return roomScene(readAll(testing::sourcePath("share/scenes/") + file));
@@ -72,13 +72,13 @@ TEST(Table52, HasItsPosesAndItsCoverage) {
     ASSERT_EQ(found.sensors.size(), 2U);
     constexpr double kWithin = 0.02;
     const Pose3 &first = found.sensors[0].pose, &second = found.sensors[1].pose;
-    EXPECT_LE(distance(first.position.onFloor(), {-0.67, 1.45}), kWithin);
-    EXPECT_LE(distance(second.position.onFloor(), {-2.13, 0.80}), kWithin);
+    EXPECT_LE(distance(first.position.onFloor(), Point2{-0.67, 1.45}), kWithin);
+    EXPECT_LE(distance(second.position.onFloor(), Point2{-2.13, 0.80}), kWithin);
     // The table's 180 and 135 degrees are the inner normals in its frame.
     EXPECT_NEAR(first.heading.degrees(), -90, 1e-9);
     EXPECT_NEAR(second.heading.degrees(), -45, 1e-9);
     EXPECT_NEAR(100 * found.coverage, 97.4, 1);
 }
 
-}  // namespace
+}  // namespace thesis_tables_test
 }  // namespace ispace

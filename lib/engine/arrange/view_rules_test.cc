@@ -11,7 +11,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace {
-namespace {
+namespace view_rules_test {
 
 /// Sensors west of x = 0 alone cover its cells.
 class WesternCells final : public CoverRule {
@@ -92,5 +92,5 @@ TEST(ArrangeOptions, RejectedPosesAreSearchedAgain) {
     for (const Pose3& pose : rejected) EXPECT_FALSE(found.sensors[0].pose == pose);
 }
 
-}  // namespace
+}  // namespace view_rules_test
 }  // namespace ispace

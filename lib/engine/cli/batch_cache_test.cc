@@ -16,7 +16,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace batch_cache_test {
 
 class BatchCacheTest : public ::testing::Test {
   protected:
@@ -198,5 +198,5 @@ TEST_F(BatchCacheTest, ReusesOutcomesWhoseProductIsUnchanged) {
     EXPECT_EQ(computed(run_, moved, result()), 1);
 }
 
-}  // namespace
+}  // namespace batch_cache_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include "base/error.h"
 
 namespace ispace {
-namespace {
+namespace batch_list_test {
 
 using Words = std::vector<std::string>;
 
@@ -66,5 +66,5 @@ TEST(JobOutcome, IsReadBackFromItsBytes) {
         EXPECT_THROW(JobOutcome::fromBytes(std::string_view(bytes).substr(0, size)), FormatError);
 }
 
-}  // namespace
+}  // namespace batch_list_test
 }  // namespace ispace

@@ -15,7 +15,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace command_line_test {
 
 /// A tool with one option of each sort.
 struct Tool {
@@ -460,5 +460,5 @@ TEST(RunTool, PrintsOneLineAnError) {
               "scan: a: b.glb: error: No such file or directory\n");
 }
 
-}  // namespace
+}  // namespace command_line_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "report/report_section.h"
 
 namespace ispace {
-namespace {
+namespace coverage_group_test {
 
 /// A section of which only the place matters.
 class Placed final : public ReportSection {
@@ -113,5 +113,5 @@ TEST(CoverageExtensions, RequirementsAreThoseOfGroupsOrNameTheExtensionThatIsMis
     }
 }
 
-}  // namespace
+}  // namespace coverage_group_test
 }  // namespace ispace

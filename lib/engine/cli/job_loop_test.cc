@@ -16,7 +16,7 @@
 #include "cli/common_options.h"
 
 namespace ispace {
-namespace {
+namespace job_loop_test {
 
 using Delivery = std::function<void()>;
 
@@ -117,5 +117,5 @@ TEST(JobLoop, AnEmptyDeliveryEndsIt) {
     EXPECT_EQ(delivered, 2U);
 }
 
-}  // namespace
+}  // namespace job_loop_test
 }  // namespace ispace

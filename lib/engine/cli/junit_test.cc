@@ -10,7 +10,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace junit_test {
 
 using namespace std::chrono_literals;
 
@@ -74,5 +74,5 @@ TEST_F(JunitFileTest, KeepsTheVerdicts) {
     EXPECT_NE(readAll(file_).find("failures=\"1\" errors=\"0\""), std::string::npos);
 }
 
-}  // namespace
+}  // namespace junit_test
 }  // namespace ispace

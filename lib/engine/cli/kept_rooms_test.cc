@@ -16,7 +16,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace kept_rooms_test {
 
 constexpr const char* kRoom = "#env 1\nispace id=room size=8,6\n";
 
@@ -112,5 +112,5 @@ TEST_F(KeptRoomsOfAListTest, MoreThanCanBeKept) {
     EXPECT_EQ(keptBy(far + far), all_read);
 }
 
-}  // namespace
+}  // namespace kept_rooms_test
 }  // namespace ispace

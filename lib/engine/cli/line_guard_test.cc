@@ -15,7 +15,7 @@
 
 namespace ispace {
 
-namespace {
+namespace line_guard_test {
 
 namespace fs = std::filesystem;
 
@@ -83,6 +83,6 @@ TEST_F(LineGuardTest, OutlivesAKilledProcess) {
     }
 }
 
-}  // namespace
+}  // namespace line_guard_test
 
 }  // namespace ispace

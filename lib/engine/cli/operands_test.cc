@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-namespace {
+namespace operands_test {
 
 namespace fs = std::filesystem;
 
@@ -178,6 +178,6 @@ TEST(RebaseFiles, LeavesOtherTextAlone) {
     EXPECT_EQ(formatRecord(records[0]), "laser id=l model=urg-04lx at=1,1");
 }
 
-}  // namespace
+}  // namespace operands_test
 
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "base/error.h"
 
 namespace ispace {
-namespace {
+namespace option_group_test {
 
 /// Weighs the sensors that --select chooses.
 class Scales : public OptionGroup {
@@ -127,5 +127,5 @@ TEST(ToolExtensions, AnOptionOfAMissingExtensionNamesIt) {
     EXPECT_TRUE(errorOf({"room.env", "--measure"}).starts_with("unknown option --measure"));
 }
 
-}  // namespace
+}  // namespace option_group_test
 }  // namespace ispace

@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-namespace {
+namespace outputs_test {
 
 TEST(FileStream, WritesWhatGoesThrough) {
     const testing::TestFolder folder;
@@ -200,6 +200,6 @@ TEST(OutputSet, RefusesBadPatterns) {
     EXPECT_EQ(refusal("%%.csv", {"a"}, false), "");
 }
 
-}  // namespace
+}  // namespace outputs_test
 
 }  // namespace ispace

@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-namespace {
+namespace progress_test {
 
 TEST(SearchWatch, EndsAtItsLimitAndNotBefore) {
     using std::chrono::steady_clock;
@@ -76,6 +76,6 @@ TEST(SearchWatch, ASignalStopsItAndTheProcessCanEndByIt) {
     EXPECT_EQ(WTERMSIG(status), SIGTERM);
 }
 
-}  // namespace
+}  // namespace progress_test
 
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace report_group_test {
 
 /// Writes the title of a page as a slide, and a list on request.
 class Slides : public ReportGroup {
@@ -99,5 +99,5 @@ TEST(ReportExtensions, HaveOptionsAndFilesBeside) {
     EXPECT_EQ(reports.writeFiles({}), std::vector<std::string>{"l.csv has 0 rooms"});
 }
 
-}  // namespace
+}  // namespace report_group_test
 }  // namespace ispace

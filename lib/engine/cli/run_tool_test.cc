@@ -18,7 +18,7 @@
 
 namespace ispace {
 
-namespace {
+namespace run_tool_test {
 
 /// Throws outside of any handler.
 template <typename Error>
@@ -27,21 +27,21 @@ void throwInThread(const Error& error) {
 }
 
 TEST(LastWords, SayALineOfAnyLength) {
-    testing::internal::CaptureStderr();
+    ::testing::internal::CaptureStderr();
     writeErrorLine({"tool", ": ", "error"});
     writeErrorLine({"tool: ", std::string(100000, 'x')});
-    const std::string said = testing::internal::GetCapturedStderr();
+    const std::string said = ::testing::internal::GetCapturedStderr();
     EXPECT_EQ(said, "tool: error\ntool: " + std::string(100000, 'x') + "\n");
 }
 
 TEST(LastWordsDeathTest, WhatCannotBeCaughtEndsWithStatusOne) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    EXPECT_EXIT(throwInThread(std::bad_alloc()), testing::ExitedWithCode(1),
+    EXPECT_EXIT(throwInThread(std::bad_alloc()), ::testing::ExitedWithCode(1),
                 "cli_test: error: not enough memory for this input\n");
-    EXPECT_EXIT(throwInThread(std::length_error("x")), testing::ExitedWithCode(1),
+    EXPECT_EXIT(throwInThread(std::length_error("x")), ::testing::ExitedWithCode(1),
                 "cli_test: error: not enough memory for this input\n");
     EXPECT_EXIT(throwInThread(std::runtime_error("pthread_create has failed")),
-                testing::ExitedWithCode(1), "cli_test: error: pthread_create has failed\n");
+                ::testing::ExitedWithCode(1), "cli_test: error: pthread_create has failed\n");
 }
 
 TEST(LastWordsDeathTest, MemoryIsSaidToBeOutOnce) {
@@ -51,11 +51,11 @@ TEST(LastWordsDeathTest, MemoryIsSaidToBeOutOnce) {
             sayMemoryIsOut("tool");
             throwInThread(std::bad_alloc());
         },
-        testing::ExitedWithCode(1), "^tool: error: not enough memory for this input\n$");
+        ::testing::ExitedWithCode(1), "^tool: error: not enough memory for this input\n$");
 }
 
 TEST(LastWordsDeathTest, AMistakeInTheProgramStaysAnAbort) {
-    EXPECT_EXIT(std::terminate(), testing::KilledBySignal(SIGABRT), "");
+    EXPECT_EXIT(std::terminate(), ::testing::KilledBySignal(SIGABRT), "");
 }
 
 TEST(Failure, NamesTheFileOfTheFilesystem) {
@@ -109,6 +109,6 @@ TEST(StopSignals, ASecondIntEndsTheProcess) {
     EXPECT_EQ(WTERMSIG(status), SIGINT);
 }
 
-}  // namespace
+}  // namespace run_tool_test
 
 }  // namespace ispace

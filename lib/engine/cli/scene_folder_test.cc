@@ -16,7 +16,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace scene_folder_test {
 
 namespace fs = std::filesystem;
 
@@ -152,5 +152,5 @@ TEST_F(SceneFolderTest, FilesOfRecordsLieInItToo) {
     EXPECT_THROW(folder().loadFilesOf(mesh), FormatError);
 }
 
-}  // namespace
+}  // namespace scene_folder_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace encode_ahead_test {
 
 Image imageOf(std::uint32_t number) { return {1, 1, {number}}; }
 
@@ -75,5 +75,5 @@ TEST(EncodeAhead, ErrorsComeOutAndWhatWasAddedIsWritten) {
     EXPECT_THROW(ahead.finish(), std::runtime_error);
 }
 
-}  // namespace
+}  // namespace encode_ahead_test
 }  // namespace ispace

@@ -16,7 +16,7 @@
 #include "drawing/drawing.h"
 
 namespace ispace {
-namespace {
+namespace gif_film_test {
 
 /// What a film shows, read by giflib.
 struct Shown {
@@ -124,5 +124,5 @@ TEST(GifFilm, RefusesWhatTheFormatCannotHold) {
     EXPECT_THROW(film.add(wide), FormatError);
 }
 
-}  // namespace
+}  // namespace gif_film_test
 }  // namespace ispace

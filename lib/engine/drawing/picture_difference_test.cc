@@ -6,7 +6,7 @@
 #include "drawing/drawing.h"
 
 namespace ispace {
-namespace {
+namespace picture_difference_test {
 
 /// A page with a square of this side.
 std::string png(double side, std::uint32_t color, double width = 100) {
@@ -35,5 +35,5 @@ TEST(PictureDifference, RefusesWhatIsNoPicture) {
     EXPECT_ANY_THROW(pictureDifference("", png(4, 0)));
 }
 
-}  // namespace
+}  // namespace picture_difference_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "base/error.h"
 
 namespace ispace {
-namespace {
+namespace picture_test {
 
 /// A decoded PNG.
 struct Pixels : Image {
@@ -444,5 +444,5 @@ TEST(Color, SequentialSchemeDarkensWithEachLevel) {
     }
 }
 
-}  // namespace
+}  // namespace picture_test
 }  // namespace ispace

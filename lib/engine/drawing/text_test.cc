@@ -6,7 +6,7 @@
 #include "base/message.h"
 
 namespace ispace {
-namespace {
+namespace text_test {
 
 const TextStyle kStyle{12, false, Align::Left, {}, {}};
 
@@ -40,5 +40,5 @@ TEST(Text, ControlCharactersAndBadBytesShowAsQuestionMarks) {
     EXPECT_EQ(textWidth("\xFF", kStyle), textWidth("?", kStyle));
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace ispace

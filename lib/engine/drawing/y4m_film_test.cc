@@ -4,7 +4,7 @@
 #include "drawing/film.h"
 
 namespace ispace {
-namespace {
+namespace y4m_film_test {
 
 TEST(Y4m, IsLumaAndHalvedColour) {
     EXPECT_EQ(y4mHeader(4, 2, 25), "YUV4MPEG2 W4 H2 F25000:1000 Ip A1:1 C420jpeg\n");
@@ -26,5 +26,5 @@ TEST(Y4m, IsLumaAndHalvedColour) {
     EXPECT_NEAR(at(11), 240, 1);
 }
 
-}  // namespace
+}  // namespace y4m_film_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_paths.h"
 
 namespace ispace {
-namespace {
+namespace calibration_test {
 
 /// As ROS' camera_calibration writes it.
 const std::string kOst =
@@ -159,5 +159,5 @@ TEST(Calibration, IsFoundBesideTheFileThatNamesIt) {
     std::filesystem::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace calibration_test
 }  // namespace ispace

@@ -22,7 +22,7 @@
 
 namespace ispace {
 
-namespace {
+namespace exporters_test {
 
 TEST(ExportFormats, RowsAreWhole) {
     std::set<std::string_view> names;
@@ -81,6 +81,6 @@ TEST(ExportFormats, BytesAreWhatTheRowSays) {
     EXPECT_TRUE(exportFormat("pdf").write(scene, document, options).product.starts_with("%PDF-"));
 }
 
-}  // namespace
+}  // namespace exporters_test
 
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_import.h"
 
 namespace ispace {
-namespace {
+namespace far_extents_test {
 
 /// Expects that the plan's corner lies less than a metre from the origin, and one note about it.
 void expectMoved(const Document& document, const ImportReport& report, double area) {
@@ -41,5 +41,5 @@ TEST(Surveyed, RosMaps) {
                 report, 12);
 }
 
-}  // namespace
+}  // namespace far_extents_test
 }  // namespace ispace

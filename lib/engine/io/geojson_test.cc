@@ -14,7 +14,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace geojson_test {
 
 using Json = nlohmann::json;
 using ispace::testing::scene;
@@ -164,5 +164,5 @@ TEST(GeoJson, SliceAlone) {
     EXPECT_TRUE(featuresOf(room, 50.0).size() == 1U);
 }
 
-}  // namespace
+}  // namespace geojson_test
 }  // namespace ispace

@@ -18,7 +18,7 @@
 #include "support/test_glb.h"
 
 namespace ispace {
-namespace {
+namespace glb_mesh_test {
 
 using Json = nlohmann::json;
 using testing::compiled;
@@ -297,5 +297,5 @@ TEST(GlbMesh, FlippedBytesNeverDoWorseThanAnError) {
     testing::surviveFlips(glb, glb.size(), 5);
 }
 
-}  // namespace
+}  // namespace glb_mesh_test
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace {
-namespace {
+namespace import_records_test {
 
 TEST(ImportRecords, TranscribesLettersInIds) {
     using Letters = ImportRecords::Letters;
@@ -12,5 +12,5 @@ TEST(ImportRecords, TranscribesLettersInIds) {
     EXPECT_EQ(ImportRecords::idWord("L\u2019Haÿ", Letters::Lower), "l-hay");
 }
 
-}  // namespace
+}  // namespace import_records_test
 }  // namespace ispace

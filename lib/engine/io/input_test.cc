@@ -13,7 +13,7 @@
 #include "support/test_paths.h"
 
 namespace ispace {
-namespace {
+namespace input_test {
 
 using namespace std::string_literals;
 
@@ -161,5 +161,5 @@ TEST(Input, RandomBytesAreErrors) {
     }
 }
 
-}  // namespace
+}  // namespace input_test
 }  // namespace ispace

@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-namespace {
+namespace mesh_export_test {
 
 Scene sceneOf(const std::string& text) {
     return makeScene(readRecordText("#env 1\n" + text, "room.env", sceneSchemas()), nullptr,
@@ -273,6 +273,6 @@ TEST(ObjAndStl, EqualScenesGiveEqualBytes) {
     EXPECT_TRUE(writeStl(scene(kRoom)) == writeStl(scene(kRoom)));
 }
 
-}  // namespace
+}  // namespace mesh_export_test
 
 }  // namespace ispace

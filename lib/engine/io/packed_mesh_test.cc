@@ -7,7 +7,7 @@
 #include "support/test_import.h"
 
 namespace ispace {
-namespace {
+namespace packed_mesh_test {
 
 TriangleMesh wall() {
     TriangleMesh mesh;
@@ -52,5 +52,5 @@ TEST(PackedMesh, LimitsGrowWithTheFile) {
     EXPECT_LT(meshLimits(SIZE_MAX).seconds, 6 * 3600U);
 }
 
-}  // namespace
+}  // namespace packed_mesh_test
 }  // namespace ispace

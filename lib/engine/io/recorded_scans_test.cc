@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace ispace {
-namespace {
+namespace recorded_scans_test {
 
 const std::string kHeader = R"({"schema":"ispace-scan/1","history":["x"],"seed":0})"
                             "\n";
@@ -88,5 +88,5 @@ TEST(RecordedScans, Refuses) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace recorded_scans_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "geom/predicates.h"
 
 namespace ispace {
-namespace {
+namespace unread_test {
 
 /// A room of 10 m x 8 m with a pillar of 2 m x 2 m.
 std::vector<PlanRegion> room() {
@@ -59,5 +59,5 @@ TEST(RoomVicinity, FindsAllOfARoomOfManyEdges) {
     }
 }
 
-}  // namespace
+}  // namespace unread_test
 }  // namespace ispace

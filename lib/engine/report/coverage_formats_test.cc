@@ -14,7 +14,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace coverage_formats_test {
 
 /// Sees x > 0; a cube stands in the far corner.
 const char* const kHalfSeen =
@@ -194,5 +194,5 @@ TEST(RoomCells, AreSmallerInSmallRoomsAndLargerInHugeBuildings) {
         }
 }
 
-}  // namespace
+}  // namespace coverage_formats_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace coverage_report_test {
 
 CoverageReport sampleReport() {
     CoverageReport report;
@@ -248,5 +248,5 @@ TEST(CoverageProducts, SameForAnyNumberOfThreadsInALargeHall) {
     for (const std::size_t threads : {2U, 3U}) EXPECT_EQ(with_threads(threads), one);
 }
 
-}  // namespace
+}  // namespace coverage_report_test
 }  // namespace ispace

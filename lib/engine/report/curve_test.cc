@@ -9,9 +9,10 @@
 #include "base/error.h"
 #include "drawing/color.h"
 #include "drawing/drawing.h"
+#include "support/test_map.h"
 
 namespace ispace {
-namespace {
+namespace curve_test {
 
 std::vector<CurvePoint> rising(int count) {
     std::vector<CurvePoint> points;
@@ -19,13 +20,6 @@ std::vector<CurvePoint> rising(int count) {
         points.push_back(
             {i, 1 - std::exp(-0.3 * i), std::min(1.0, 1.1 - 1.1 * std::exp(-0.3 * i))});
     return points;
-}
-
-std::uint32_t pixelOf(Color color) {
-    const auto part = [](double share) {
-        return static_cast<std::uint32_t>(std::lround(share * 255));
-    };
-    return part(color.red) << 16 | part(color.green) << 8 | part(color.blue);
 }
 
 /// But for rounding, which mixing brings.
@@ -134,5 +128,5 @@ TEST(Curve, WidthHasLimits) {
     EXPECT_THROW(drawCurve(rising(2), "", PictureFormat::Png, 12001), UsageError);
 }
 
-}  // namespace
+}  // namespace curve_test
 }  // namespace ispace

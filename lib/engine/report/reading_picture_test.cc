@@ -8,7 +8,7 @@
 
 namespace ispace {
 
-namespace {
+namespace reading_picture_test {
 
 TEST(PictureText, RoundSteps) {
     EXPECT_DOUBLE_EQ(roundStep(1), 1);
@@ -43,9 +43,9 @@ TEST(PictureText, Titles) {
     EXPECT_EQ(pictureTitle("l1", "", "laser", 0, pose), "l1 (laser), frame 0, tilt −30°, roll 5°");
 }
 
-}  // namespace
+}  // namespace reading_picture_test
 
-namespace {
+namespace reading_picture_test {
 
 /// Mean place of the pixels of returns, and how many there are.
 struct Returns {
@@ -205,6 +205,6 @@ TEST(ColorDepth, OddRangersAreDrawn) {
     }
 }
 
-}  // namespace
+}  // namespace reading_picture_test
 
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace {
-namespace {
+namespace text_table_test {
 
 TEST(TextTable, AlignsByCharacters) {
     EXPECT_EQ(aligned({{"Küche", "1.5 m²"}, {"hall", "12 m"}}, "lr"),
@@ -12,5 +12,5 @@ TEST(TextTable, AlignsByCharacters) {
               "hall     12 m\n");
 }
 
-}  // namespace
+}  // namespace text_table_test
 }  // namespace ispace

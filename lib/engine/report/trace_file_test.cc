@@ -9,7 +9,7 @@
 #include "base/number.h"
 
 namespace ispace {
-namespace {
+namespace trace_file_test {
 
 const std::string kHeader = "{\"schema\":\"ispace-trace/1\",\"history\":[]}\n";
 
@@ -157,5 +157,5 @@ TEST(TraceFile, DamagedFilesAreReadOrRefused) {
     EXPECT_LT(read, 10000);
 }
 
-}  // namespace
+}  // namespace trace_file_test
 }  // namespace ispace

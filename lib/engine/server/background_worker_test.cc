@@ -9,7 +9,7 @@
 #include <string>
 
 namespace ispace {
-namespace {
+namespace background_worker_test {
 
 using Control = tbb::global_control;
 
@@ -118,5 +118,5 @@ TEST(BackgroundWorker, DropsWhatIsNotBegun) {
     EXPECT_EQ(worked, 1);
 }
 
-}  // namespace
+}  // namespace background_worker_test
 }  // namespace ispace

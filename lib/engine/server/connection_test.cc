@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-namespace {
+namespace connection_test {
 
 std::vector<std::string> takeAll(LineBuffer& buffer) {
     std::vector<std::string> lines;
@@ -143,6 +143,6 @@ TEST(Outbox, BytesComeOutAsTheyWentIn) {
     EXPECT_EQ(out, in);
 }
 
-}  // namespace
+}  // namespace connection_test
 
 }  // namespace ispace

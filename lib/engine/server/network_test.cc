@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace ispace {
-namespace {
+namespace network_test {
 
 bool holds(const std::string& network, const std::string& address) {
     const std::vector<Network> allowed{parseNetwork(network)};
@@ -54,5 +54,5 @@ TEST(Network, RefusesWhatIsNone) {
     }
 }
 
-}  // namespace
+}  // namespace network_test
 }  // namespace ispace

@@ -14,7 +14,7 @@
 #include "support/test_source.h"
 
 namespace ispace {
-namespace {
+namespace server_change_test {
 
 using testing::Client;
 using testing::comes;
@@ -201,5 +201,5 @@ TEST(ServerChange, WithOneThread) {
     EXPECT_EQ(world.ask("LIST").substr(0, 20), "OK LIST robots=r1,r3");
 }
 
-}  // namespace
+}  // namespace server_change_test
 }  // namespace ispace

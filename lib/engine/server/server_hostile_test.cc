@@ -13,7 +13,7 @@
 #include "support/test_client.h"
 
 namespace ispace {
-namespace {
+namespace server_hostile_test {
 
 using testing::Client;
 using testing::comes;
@@ -283,5 +283,5 @@ TEST(Server, IsNoWebServer) {
     EXPECT_EQ(world.take("WORLD").ask("TIME"), "OK TIME t=0.000 steps=0");
 }
 
-}  // namespace
+}  // namespace server_hostile_test
 }  // namespace ispace

@@ -15,7 +15,7 @@
 
 namespace ispace {
 
-namespace {
+namespace server_limits_test {
 
 using testing::Client;
 using testing::Running;
@@ -251,6 +251,6 @@ TEST(TokenBucket, SurvivesAClockThatDoesNotMove) {
     EXPECT_EQ(taken(bucket, start - milliseconds(5000)), 0);
 }
 
-}  // namespace
+}  // namespace server_limits_test
 
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_client.h"
 
 namespace ispace {
-namespace {
+namespace server_pictures_test {
 
 using testing::Client;
 using testing::Running;
@@ -126,5 +126,5 @@ TEST(ServerPictures, AtTheEndOfARun) {
     EXPECT_EQ(bytes.substr(1, 3), "PNG");
 }
 
-}  // namespace
+}  // namespace server_pictures_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_source.h"
 
 namespace ispace {
-namespace {
+namespace server_roles_test {
 
 using testing::Client;
 using testing::comes;
@@ -184,5 +184,5 @@ TEST(ServerRoles, WhoDiesWithChangesOnTheWayLeavesAWorld) {
     EXPECT_EQ(step(world, 1).substr(0, 7), "OK STEP");
 }
 
-}  // namespace
+}  // namespace server_roles_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-namespace {
+namespace server_state_test {
 
 TEST(StepQueue, TakesThemInTheOrderOfAsking) {
     testing::TestWorld room({Clock::Kind::Step, 1});
@@ -63,9 +63,9 @@ TEST(StepQueue, CutsShort) {
     EXPECT_TRUE(third->over);
 }
 
-}  // namespace
+}  // namespace server_state_test
 
-namespace {
+namespace server_state_test {
 
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
@@ -141,6 +141,6 @@ TEST(ScanText, BinaryIsLittleEndian) {
                   bytes);
 }
 
-}  // namespace
+}  // namespace server_state_test
 
 }  // namespace ispace

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-namespace {
+namespace server_test {
 
 using testing::Client;
 using testing::comes;
@@ -294,6 +294,6 @@ TEST(ParseEndpoint, TellsOtherMachinesApart) {
         EXPECT_TRUE(parseEndpoint(host + ":80").is_loopback) << host;
 }
 
-}  // namespace
+}  // namespace server_test
 
 }  // namespace ispace

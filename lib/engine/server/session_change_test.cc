@@ -14,7 +14,7 @@ namespace ispace {
 using testing::streamed;
 using testing::Talk;
 
-namespace {
+namespace session_change_test {
 
 ServerLimits changing() {
     ServerLimits limits;
@@ -575,6 +575,6 @@ TEST(SessionChange, APersonIsDriven) {
               "PERSON h1: open another one\n");
 }
 
-}  // namespace
+}  // namespace session_change_test
 
 }  // namespace ispace

@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-namespace {
+namespace session_requests_test {
 
 using testing::streamed;
 using testing::Talk;
@@ -263,9 +263,9 @@ TEST(Session, StreamArguments) {
     EXPECT_EQ(streamed(laser), "");
 }
 
-}  // namespace
+}  // namespace session_requests_test
 
-namespace {
+namespace session_requests_test {
 
 using testing::Talk;
 
@@ -440,6 +440,6 @@ TEST(Session, ShutdownMayBeRefused) {
               "TRACK id [storey/]x,y [t=s] [kind=person|robot] | HELP | QUIT\n");
 }
 
-}  // namespace
+}  // namespace session_requests_test
 
 }  // namespace ispace

@@ -17,7 +17,7 @@
 #include "support/test_talk.h"
 
 namespace ispace {
-namespace {
+namespace session_seek_test {
 
 using testing::Talk;
 
@@ -201,5 +201,5 @@ TEST(SessionSeek, LeavesTheThreadThatServesToOthers) {
     state.stopBackground();
 }
 
-}  // namespace
+}  // namespace session_seek_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_talk.h"
 
 namespace ispace {
-namespace {
+namespace session_sensors_test {
 
 using testing::kLong;
 
@@ -283,5 +283,5 @@ TEST(SessionSensors, AMatIsStreamed) {
     EXPECT_TRUE(all.ends_with("SCAN m1 t=6.000 seq=30 n=1 on=r1 stream=1\n")) << all;
 }
 
-}  // namespace
+}  // namespace session_sensors_test
 }  // namespace ispace

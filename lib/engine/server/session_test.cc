@@ -11,7 +11,7 @@
 #include "support/test_talk.h"
 
 namespace ispace {
-namespace {
+namespace session_test {
 
 using testing::streamed;
 using testing::Talk;
@@ -357,5 +357,5 @@ TEST(Session, AnyBytesGetOnePrintableLine) {
               "is\n");
 }
 
-}  // namespace
+}  // namespace session_test
 }  // namespace ispace

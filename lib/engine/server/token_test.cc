@@ -9,7 +9,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace token_test {
 
 class Token : public ::testing::Test {
   protected:
@@ -47,5 +47,5 @@ TEST_F(Token, Comparison) {
     EXPECT_FALSE(isSameSecret("abc", ""));
 }
 
-}  // namespace
+}  // namespace token_test
 }  // namespace ispace

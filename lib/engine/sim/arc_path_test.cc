@@ -9,7 +9,7 @@
 #include "scene/sensor/sensor.h"
 
 namespace ispace {
-namespace {
+namespace arc_path_test {
 
 /// Where an arc of a radius leads, turning by an angle.
 Pose2 onArc(const Pose2& from, double radius, Angle turn) {
@@ -87,5 +87,5 @@ TEST(ArcPath, FacesExactlyWhereItGoesStraightOn) {
     EXPECT_EQ(frames.y, (std::vector<double>{2.5, 3, 3.5}));
 }
 
-}  // namespace
+}  // namespace arc_path_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace change_test {
 
 using std::chrono::milliseconds;
 using testing::findings;
@@ -170,5 +170,5 @@ TEST(Change, ASensorOnAPersonGoesAlong) {
     EXPECT_NEAR(world.reading(0).pose.heading.degrees(), before.heading.degrees(), 1e-12);
 }
 
-}  // namespace
+}  // namespace change_test
 }  // namespace ispace

@@ -17,7 +17,7 @@
 
 namespace ispace {
 
-namespace {
+namespace collision_test {
 
 Polygon square(Point2 center, double half) {
     const auto [x, y] = center;
@@ -249,6 +249,6 @@ TEST(Collision, PairsThatCanMeetAreBounded) {
     EXPECT_THROW(checkCrowding(movers, motions, 300), FormatError) << "of fast movers";
 }
 
-}  // namespace
+}  // namespace collision_test
 
 }  // namespace ispace

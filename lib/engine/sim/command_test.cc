@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-namespace {
+namespace command_test {
 
 using Kind = CommandError::Kind;
 
@@ -289,6 +289,6 @@ TEST_F(ScriptTest, SurvivesGarbage) {
     EXPECT_GT(good, 100);
 }
 
-}  // namespace
+}  // namespace command_test
 
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace course_check_test {
 
 using testing::scene;
 
@@ -88,5 +88,5 @@ TEST(CourseCheck, AsManyAsAreReported) {
     EXPECT_EQ(checkCourses(scene(kWall, layout)).size(), Diagnostics::kMax);
 }
 
-}  // namespace
+}  // namespace course_check_test
 }  // namespace ispace

@@ -16,7 +16,7 @@
 #include "trace/ray_world.h"
 
 namespace ispace {
-namespace {
+namespace edit_random_test {
 
 using std::chrono::milliseconds;
 
@@ -245,5 +245,5 @@ TEST(RandomEdits, ARoomAnswersLikeOneBuiltFromItsRecords) {
     EXPECT_GT(shared, accepted / 2);
 }
 
-}  // namespace
+}  // namespace edit_random_test
 }  // namespace ispace

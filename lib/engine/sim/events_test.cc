@@ -7,7 +7,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace events_test {
 
 using std::chrono::milliseconds;
 using testing::scene;
@@ -179,5 +179,5 @@ TEST(Events, OldOnesGo) {
     EXPECT_EQ(log.at(49999).text, "49999");
 }
 
-}  // namespace
+}  // namespace events_test
 }  // namespace ispace

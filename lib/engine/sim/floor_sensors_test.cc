@@ -11,7 +11,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace floor_sensors_test {
 
 using testing::scene;
 
@@ -185,5 +185,5 @@ TEST(FloorSensors, AMatFeelsBoxes) {
     EXPECT_GT(touches, 500);
 }
 
-}  // namespace
+}  // namespace floor_sensors_test
 }  // namespace ispace

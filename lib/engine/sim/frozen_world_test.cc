@@ -9,7 +9,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace frozen_world_test {
 
 constexpr const char* kRoom =
     "ispace size=8,6\npillar id=post at=2,0 size=0.2,0.2,2.5\nbarrier id=low at=-1,1 "
@@ -134,5 +134,5 @@ TEST(FrozenWorld, NoiseIsThatOfEachReading) {
         EXPECT_EQ(u3[static_cast<std::size_t>(frame)], noisy.at({"heard", frame, 0}).front());
 }
 
-}  // namespace
+}  // namespace frozen_world_test
 }  // namespace ispace

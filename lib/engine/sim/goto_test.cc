@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace goto_test {
 
 using testing::scene;
 
@@ -244,5 +244,5 @@ TEST(ParseGoto, TakesAPointAHeadingAndASpeed) {
     EXPECT_EQ(parseCommand("GOTO 1e9,2").error.kind, CommandError::Kind::Range);
 }
 
-}  // namespace
+}  // namespace goto_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace lateness_test {
 
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
@@ -67,5 +67,5 @@ TEST_F(LatenessTest, TheNextStepIsDueUnlessPaused) {
     EXPECT_FALSE(fast.due());
 }
 
-}  // namespace
+}  // namespace lateness_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace later_test {
 
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
@@ -134,5 +134,5 @@ TEST(Later, APictureShowsTheWorldAsItWasAskedOf) {
     }
 }
 
-}  // namespace
+}  // namespace later_test
 }  // namespace ispace

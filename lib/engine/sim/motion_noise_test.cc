@@ -16,7 +16,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace motion_noise_test {
 
 using std::chrono::milliseconds;
 using testing::scene;
@@ -301,5 +301,5 @@ TEST(MotionNoise, MovesThatItLengthensMeetNoOther) {
     expectNoOverlap(" radius=0.1 max_speed=8 accel=50", " radius=0.6" + noise);
 }
 
-}  // namespace
+}  // namespace motion_noise_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-namespace {
+namespace motion_test {
 
 using testing::scene;
 
@@ -357,6 +357,6 @@ TEST(Motion, StaysWithinWhatItTellsOfItsChord) {
     EXPECT_EQ(advance(commanded(moving(1), Verb::Stop, 0), limits, 0.5).bulge, 0);
 }
 
-}  // namespace
+}  // namespace motion_test
 
 }  // namespace ispace

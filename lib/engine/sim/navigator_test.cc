@@ -11,7 +11,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace navigator_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -292,5 +292,5 @@ TEST(Navigator, LongStepsDoNoHarm) {
     EXPECT_TRUE(timeUntil(world, seconds(60), [&] { return isAt(world, 1, {4, 2}, 0.02); }));
 }
 
-}  // namespace
+}  // namespace navigator_test
 }  // namespace ispace

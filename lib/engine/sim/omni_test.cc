@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace omni_test {
 
 using std::chrono::milliseconds;
 using testing::scene;
@@ -92,5 +92,5 @@ TEST(Omni, OthersDoNotGoSideways) {
         "room.3dm:2:21: error: only drive=omni goes sideways: say so, or leave it out\n");
 }
 
-}  // namespace
+}  // namespace omni_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace pace_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -77,5 +77,5 @@ TEST(Pace, AWorldBehindItRefusesMore) {
     EXPECT_THROW(checkPace(few, faster, 2), OverLimit);
 }
 
-}  // namespace
+}  // namespace pace_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace path_finder_test {
 
 /// Two rooms of 4 m x 4 m, joined by a door 0.9 m wide at x = 4, y from 3 to 3.9.
 constexpr const char* kRooms =
@@ -194,5 +194,5 @@ TEST(PathFinder, ApproachesTheNearestSuitablePoint) {
     EXPECT_GT(saved, 10000U);
 }
 
-}  // namespace
+}  // namespace path_finder_test
 }  // namespace ispace

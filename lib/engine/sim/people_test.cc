@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace people_test {
 
 using std::chrono::milliseconds;
 using testing::scene;
@@ -118,5 +118,5 @@ TEST(Gait, ALaserSeesTheLegsSwing) {
     EXPECT_LT(widest, 0.49);
 }
 
-}  // namespace
+}  // namespace people_test
 }  // namespace ispace

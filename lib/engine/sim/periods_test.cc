@@ -8,7 +8,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace periods_test {
 
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
@@ -53,5 +53,5 @@ TEST(Periods, BeginWhereTheyAreNewest) {
     }
 }
 
-}  // namespace
+}  // namespace periods_test
 }  // namespace ispace

@@ -20,7 +20,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace record_form_test {
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
@@ -215,5 +215,5 @@ TEST_F(RecordFormTest, ReadersSkipATornBlock) {
     EXPECT_THROW(RunReader(path("run")), FormatError);
 }
 
-}  // namespace
+}  // namespace record_form_test
 }  // namespace ispace

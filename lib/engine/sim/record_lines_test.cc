@@ -15,7 +15,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace record_lines_test {
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
@@ -291,5 +291,5 @@ TEST_F(RecordLines, EventsAfterTheLastStepAreKept) {
               before + "0.1,mark,,,,,,first\n0.1,mark,,,,,,last\n");
 }
 
-}  // namespace
+}  // namespace record_lines_test
 }  // namespace ispace

@@ -15,7 +15,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace recorder_test {
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
@@ -305,5 +305,5 @@ TEST_F(RecorderTest, ScenesCountForTheLimit) {
     EXPECT_THROW(recorder.flush(world), FormatError);
 }
 
-}  // namespace
+}  // namespace recorder_test
 }  // namespace ispace

@@ -14,7 +14,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace replay_test {
 
 namespace fs = std::filesystem;
 using std::chrono::hours;
@@ -462,5 +462,5 @@ TEST_F(ReplayTest, PassesOverWhoIsGone) {
     EXPECT_EQ(world.steps(), 200);
 }
 
-}  // namespace
+}  // namespace replay_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace robot_sensors_test {
 
 using std::chrono::milliseconds;
 using testing::scene;
@@ -165,5 +165,5 @@ TEST(RobotRecord, PartsOfTheRimAndRangesAreChecked) {
               "2 m\n");
 }
 
-}  // namespace
+}  // namespace robot_sensors_test
 }  // namespace ispace

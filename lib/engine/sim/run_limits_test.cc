@@ -8,7 +8,7 @@
 #include "support/test_source.h"
 
 namespace ispace {
-namespace {
+namespace run_limits_test {
 
 using std::chrono::milliseconds;
 using testing::findings;
@@ -61,5 +61,5 @@ TEST(RunLimits, RefusesWhatGrowsBeyondABound) {
     checkLoad(large, small);
 }
 
-}  // namespace
+}  // namespace run_limits_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace script_lines_test {
 
 /// Marks each step.
 class Teller final : public Director {
@@ -67,5 +67,5 @@ TEST(ScriptLines, NameTheExtensionThatTheBuildLacks) {
     EXPECT_EQ(missingScriptLine("tell"), "");
 }
 
-}  // namespace
+}  // namespace script_lines_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace sensors_test {
 
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
@@ -113,5 +113,5 @@ TEST(SensorReader, ATiltedOneOnARobotSeesThroughClearGlass) {
     }
 }
 
-}  // namespace
+}  // namespace sensors_test
 }  // namespace ispace

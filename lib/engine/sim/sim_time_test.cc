@@ -11,7 +11,7 @@
 #include "base/number.h"
 
 namespace ispace {
-namespace {
+namespace sim_time_test {
 
 using std::chrono::nanoseconds;
 
@@ -130,5 +130,5 @@ TEST(SimTimeProperty, MillisecondsAreWithinHalfOfOne) {
     }
 }
 
-}  // namespace
+}  // namespace sim_time_test
 }  // namespace ispace

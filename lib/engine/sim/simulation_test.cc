@@ -13,7 +13,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace simulation_test {
 
 using std::chrono::hours;
 using std::chrono::milliseconds;
@@ -455,5 +455,5 @@ TEST(SimulationRecord, IsTheSameForAnyClock) {
     EXPECT_NE(world.status(0).pose, Pose2{});
 }
 
-}  // namespace
+}  // namespace simulation_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace spin_test {
 
 using std::chrono::milliseconds;
 using testing::scene;
@@ -236,5 +236,5 @@ TEST(PoseHistory, StandsWhereNothingMoves) {
     EXPECT_FALSE(trail.isStillSince(milliseconds(49)));
 }
 
-}  // namespace
+}  // namespace spin_test
 }  // namespace ispace

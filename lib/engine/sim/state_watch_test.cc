@@ -11,7 +11,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace state_watch_test {
 
 using std::chrono::milliseconds;
 using States = std::vector<RoomState>;
@@ -94,5 +94,5 @@ TEST(Script, ActsAreChecked) {
     EXPECT_NE(finding("1 l1 ACT on=maybe").find("neither yes nor no"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace state_watch_test
 }  // namespace ispace

@@ -15,7 +15,7 @@
 
 namespace ispace {
 
-namespace {
+namespace steering_test {
 
 constexpr double kRadius = 0.25, kGap = 0.05, kHair = 1e-6;  // as steering has them
 
@@ -279,6 +279,6 @@ TEST(FreeStrip, ContainsItsEndsAndLittleBeside) {
     EXPECT_FALSE(FreeStrip().contains(Point2{}));
 }
 
-}  // namespace
+}  // namespace steering_test
 
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include <string>
 
 namespace ispace {
-namespace {
+namespace track_log_test {
 
 ToldTrack track(int name, int ms) {
     return {.told = std::chrono::milliseconds(ms), .track = std::to_string(name)};
@@ -35,5 +35,5 @@ TEST(TrackLog, IsBounded) {
     EXPECT_EQ(log.at(log.first()).track, "0");
 }
 
-}  // namespace
+}  // namespace track_log_test
 }  // namespace ispace

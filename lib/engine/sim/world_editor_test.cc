@@ -8,7 +8,7 @@
 #include "support/test_source.h"
 
 namespace ispace {
-namespace {
+namespace world_editor_test {
 
 using std::chrono::milliseconds;
 using testing::findings;
@@ -199,5 +199,5 @@ TEST(WorldEditor, FilesAreTheSourcesBusiness) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace world_editor_test
 }  // namespace ispace

@@ -14,7 +14,7 @@
 #include "support/test_paths.h"
 
 namespace ispace {
-namespace {
+namespace world_random_test {
 
 using std::chrono::milliseconds;
 
@@ -179,5 +179,5 @@ TEST(WorldRandom, IsTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(alone, trace(room, 2));
 }
 
-}  // namespace
+}  // namespace world_random_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace world_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -405,5 +405,5 @@ TEST(World, FloorsSlowDown) {
     EXPECT_EQ(world.status(0).speed, 0);
 }
 
-}  // namespace
+}  // namespace world_test
 }  // namespace ispace

@@ -19,7 +19,7 @@
 #include "support/test_splits.h"
 
 namespace ispace {
-namespace {
+namespace arranged_site_test {
 
 /// Two storeys: one room with a wall across, and one hall.
 SiteScene twoStoreys() {
@@ -479,5 +479,5 @@ TEST(BuildingSite, CoversAsMuchAsCoverageSays) {
         EXPECT_TRUE(sensor.id.starts_with("ground/"));
 }
 
-}  // namespace
+}  // namespace arranged_site_test
 }  // namespace ispace

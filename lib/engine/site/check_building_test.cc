@@ -9,7 +9,7 @@
 #include "site/storeys.h"
 
 namespace ispace {
-namespace {
+namespace check_building_test {
 
 constexpr const char* kRoom =
     "{fence: {id: f, path: [[0, 0], [8, 0], [8, 6], [0, 6]], closed: yes}}";
@@ -138,5 +138,5 @@ TEST(BuildingCheck, FindsShaftsWithoutArea) {
     EXPECT_EQ(shaft("[[1, 1], [2, 2], [2, 1], [1, 2]]").size(), 1U);
 }
 
-}  // namespace
+}  // namespace check_building_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "scene/placement_schemas.h"
 
 namespace ispace {
-namespace {
+namespace chosen_storeys_test {
 
 /// Three storeys, stairs between the lower two, and a lift through all.
 StoreyedDocument tower() {
@@ -64,5 +64,5 @@ TEST(ChosenStoreys, TakeTheirPartOfALayout) {
     EXPECT_TRUE(told.empty());
 }
 
-}  // namespace
+}  // namespace chosen_storeys_test
 }  // namespace ispace

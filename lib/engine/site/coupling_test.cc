@@ -18,7 +18,7 @@
 #include "trace/ray_world.h"
 
 namespace ispace {
-namespace {
+namespace coupling_test {
 
 using testing::castTo;
 
@@ -222,5 +222,5 @@ TEST(Coupling, StoreysWithHolesElsewhereShareNoFloor) {
     EXPECT_TRUE(floors("[[3, 2], [5, 2], [5, 4], [3, 4]]")) << "equal holes";
 }
 
-}  // namespace
+}  // namespace coupling_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "site/site_scene.h"
 
 namespace ispace {
-namespace {
+namespace site_edit_test {
 
 /// Three storeys of one room: a fence, two desks and a laser on one of them, without ids.
 StoreyedDocument tower() {
@@ -85,5 +85,5 @@ TEST(BuildingEdit, RefusesWhatHasNoStorey) {
     EXPECT_EQ(building.storeys[0].room, building.storeys[1].room);
 }
 
-}  // namespace
+}  // namespace site_edit_test
 }  // namespace ispace

@@ -21,7 +21,7 @@
 #include "trace/ray_world.h"
 
 namespace ispace {
-namespace {
+namespace site_sight_test {
 
 using testing::castTo;
 
@@ -383,5 +383,5 @@ TEST(BuildingSight, EqualStoreysShareViews) {
     EXPECT_NEAR(signedArea(views[100].front().view->region), 25, 1e-3);
 }
 
-}  // namespace
+}  // namespace site_sight_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "site/storey_people.h"
 
 namespace ispace {
-namespace {
+namespace site_sums_test {
 
 SiteScene sceneOf(const std::string& text) {
     return makeSiteScene(readBuilding(text, "house.yaml", {}), {}, {});
@@ -88,5 +88,5 @@ TEST(StoreyPeople, AreSpreadByFreeFloor) {
     EXPECT_EQ(spreadOverStoreys(building, 0, 30), spreadOverStoreys(measureSite(building, {}), 30));
 }
 
-}  // namespace
+}  // namespace site_sums_test
 }  // namespace ispace

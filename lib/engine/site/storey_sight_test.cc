@@ -17,7 +17,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace storey_sight_test {
 
 /// Two storeys around a shaft, the upper one turned by a quarter.
 constexpr const char* kTurned =
@@ -204,5 +204,5 @@ TEST(StoreySight, TheValueOfALayoutIsItsCoverageByCells) {
             }
 }
 
-}  // namespace
+}  // namespace storey_sight_test
 }  // namespace ispace

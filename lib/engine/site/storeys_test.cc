@@ -17,7 +17,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace storeys_test {
 
 namespace fs = std::filesystem;
 
@@ -326,5 +326,5 @@ TEST(Building, SplitsLayoutsByTheStoreysOfTheirIds) {
     EXPECT_EQ(&scene.scenes[0]->environment.indoor(), &scene.scenes[1]->environment.indoor());
 }
 
-}  // namespace
+}  // namespace storeys_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::advice {
-namespace {
+namespace coarse_sight_test {
 
 constexpr const char* kRoom =
     "#env 1\nispace id=hall size=10,8,2.8\n"
@@ -129,5 +129,5 @@ TEST(CoarseSight, CountsFloorThatOneReceiverIsShortOf) {
     }
 }
 
-}  // namespace
+}  // namespace coarse_sight_test
 }  // namespace ispace::advice

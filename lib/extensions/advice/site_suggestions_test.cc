@@ -9,7 +9,7 @@
 #include "site/site_sight.h"
 
 namespace ispace::advice {
-namespace {
+namespace site_suggestions_test {
 
 SiteScene sceneOf(const std::string& text) {
     return makeSiteScene(readBuilding(text, "house.yaml", {}), {}, {});
@@ -139,5 +139,5 @@ TEST(BuildingSuggestions, RegardRulesOfOneStorey) {
     for (const Edit& edit : found[0].edits) EXPECT_NE(edit.text.find("u/"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace site_suggestions_test
 }  // namespace ispace::advice

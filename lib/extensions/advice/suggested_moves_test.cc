@@ -12,7 +12,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::advice {
-namespace {
+namespace suggested_moves_test {
 
 constexpr const char* kRoom =
     "#env 1\nispace id=hall size=10,8,2.8\nwall from=0,-4 to=0,1\n"
@@ -107,5 +107,5 @@ TEST(MoveTrials, AreNotKnownForRequirements) {
     EXPECT_FALSE(MoveTrials::areKnown(now.scene, now.coverage, options));
 }
 
-}  // namespace
+}  // namespace suggested_moves_test
 }  // namespace ispace::advice

@@ -11,7 +11,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::advice {
-namespace {
+namespace suggestion_test {
 
 struct Advised {
     Scene scene;
@@ -260,5 +260,5 @@ TEST(SuggestChanges, EndAtOnceAfterAStop) {
               all.size());
 }
 
-}  // namespace
+}  // namespace suggestion_test
 }  // namespace ispace::advice

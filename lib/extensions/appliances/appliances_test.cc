@@ -16,7 +16,7 @@
 #include "server/session.h"
 
 namespace ispace::appliances {
-namespace {
+namespace appliances_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -341,5 +341,5 @@ TEST(Meters, AreNoneWithoutAppliances) {
     EXPECT_EQ(makeMeters({&room, 1}, 1), nullptr);
 }
 
-}  // namespace
+}  // namespace appliances_test
 }  // namespace ispace::appliances

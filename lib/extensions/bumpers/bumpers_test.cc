@@ -19,7 +19,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::bumpers {
-namespace {
+namespace bumpers_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -200,5 +200,5 @@ TEST(BumperService, IsForBumpers) {
     EXPECT_THROW(makeBumpers({&second, 1}, 1), FormatError);
 }
 
-}  // namespace
+}  // namespace bumpers_test
 }  // namespace ispace::bumpers

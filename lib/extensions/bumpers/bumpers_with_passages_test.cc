@@ -11,7 +11,7 @@
 #include "extensions/passages/passages_test.h"
 
 namespace ispace::bumpers {
-namespace {
+namespace bumpers_with_passages_test {
 
 /// In a building, the bumper is of a robot of its storey, and goes along with it.
 TEST(BumperService, GoesToOtherStoreys) {
@@ -46,5 +46,5 @@ TEST(BumperService, GoesToOtherStoreys) {
     }
 }
 
-}  // namespace
+}  // namespace bumpers_with_passages_test
 }  // namespace ispace::bumpers

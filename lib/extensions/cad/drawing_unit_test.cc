@@ -11,7 +11,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace drawing_unit_test {
 
 constexpr double kInch = 1 / 0.0254;
 
@@ -189,5 +189,5 @@ TEST(DrawingUnit, OfSvg) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace drawing_unit_test
 }  // namespace ispace::cad

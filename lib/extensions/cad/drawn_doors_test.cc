@@ -9,7 +9,7 @@
 #include "support/test_work.h"
 
 namespace ispace::cad {
-namespace {
+namespace drawn_doors_test {
 
 Polygon arcOf(Point2 center, double radius, double from, double to, int pieces = 12) {
     Polygon points;
@@ -157,5 +157,5 @@ TEST(DrawnDoors, OnWallsThatRunOn) {
     EXPECT_NEAR(environmentOf(shower).indoor().area(), 9, 1e-9);
 }
 
-}  // namespace
+}  // namespace drawn_doors_test
 }  // namespace ispace::cad

@@ -7,7 +7,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::cad {
-namespace {
+namespace dxf_room_test {
 
 std::string ours(const std::string& entities, int units = 6) {
     std::string layers;
@@ -120,5 +120,5 @@ TEST(DxfRoom, PanesKeepTheirGlass) {
             << pane(keys);
 }
 
-}  // namespace
+}  // namespace dxf_room_test
 }  // namespace ispace::cad

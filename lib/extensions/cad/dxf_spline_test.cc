@@ -9,7 +9,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace dxf_spline_test {
 
 constexpr double kHalfRoot = std::numbers::sqrt2 / 2;
 
@@ -115,5 +115,5 @@ TEST(DxfSpline, SurvivesDamage) {
     });
 }
 
-}  // namespace
+}  // namespace dxf_spline_test
 }  // namespace ispace::cad

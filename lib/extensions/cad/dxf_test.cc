@@ -9,7 +9,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace dxf_test {
 
 Document read(const std::string& dxf, const ImportOptions& options = {}) {
     return readDxf(dxf, "plan.dxf", options, sceneSchemas());
@@ -529,5 +529,5 @@ TEST(Dxf, SameBytesTwice) {
     EXPECT_EQ(textOf(dxf), textOf(dxf));
 }
 
-}  // namespace
+}  // namespace dxf_test
 }  // namespace ispace::cad

@@ -12,7 +12,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace dxf_text_test {
 
 TEST(DxfText, EscapesAndCodePages) {
     DxfText text;
@@ -80,5 +80,5 @@ TEST(DxfText, LongLinesAndControlCharacters) {
     EXPECT_DOUBLE_EQ(area(crlf), 12);
 }
 
-}  // namespace
+}  // namespace dxf_text_test
 }  // namespace ispace::cad

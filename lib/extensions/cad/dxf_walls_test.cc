@@ -11,7 +11,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace dxf_walls_test {
 
 Document read(const std::string& dxf, const ImportOptions& options = {}) {
     return readDxf(dxf, "plan.dxf", options, sceneSchemas());
@@ -360,5 +360,5 @@ TEST(RealPlans, UnitsThatLieAreSaid) {
         << warned;
 }
 
-}  // namespace
+}  // namespace dxf_walls_test
 }  // namespace ispace::cad

@@ -6,7 +6,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace gallery_file_test {
 
 Document read(const std::string& text, const ImportOptions& options = {}) {
     return readGalleryFile(text, "a.pol", options, sceneSchemas());
@@ -86,5 +86,5 @@ TEST(GalleryFile, Refuses) {
     EXPECT_NE(errorOf("9223372036854775807 0/1 0/1"), "");
 }
 
-}  // namespace
+}  // namespace gallery_file_test
 }  // namespace ispace::cad

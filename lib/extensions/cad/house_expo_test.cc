@@ -8,7 +8,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace house_expo_test {
 
 Document read(const std::string& json, const ImportOptions& options = {}) {
     return readHouseExpo(json, "plan.json", options, sceneSchemas());
@@ -162,5 +162,5 @@ TEST(HouseExpo, RealPlans) {
     EXPECT_NEAR(environmentOf(load("syn_20.json")).indoor().area(), 4405, 1);
 }
 
-}  // namespace
+}  // namespace house_expo_test
 }  // namespace ispace::cad

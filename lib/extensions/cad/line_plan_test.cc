@@ -10,7 +10,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace line_plan_test {
 
 /// A long slanted line, `count` times `count` copies of which lie 3 cm apart.
 std::string crowd(int count) {
@@ -133,5 +133,5 @@ TEST(LinePlan, CupboardsOfShelvesKeepTheirBacks) {
         60 - 0.2 * 6 + 0.2 * 0.9, 1e-6);
 }
 
-}  // namespace
+}  // namespace line_plan_test
 }  // namespace ispace::cad

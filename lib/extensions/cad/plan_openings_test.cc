@@ -10,7 +10,7 @@
 #include "support/test_work.h"
 
 namespace ispace::cad {
-namespace {
+namespace plan_openings_test {
 
 using Lines = std::vector<Segment2>;
 
@@ -297,5 +297,5 @@ TEST(PlanOpenings, LowWallsHaveLowOpenings) {
     }
 }
 
-}  // namespace
+}  // namespace plan_openings_test
 }  // namespace ispace::cad

@@ -10,7 +10,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace surveyed_test {
 
 /// Expects that the plan's corner lies less than a metre from the origin, and one note about it.
 void expectMoved(const Document& document, const ImportReport& report, double area) {
@@ -83,5 +83,5 @@ TEST(CadImporters, ToldApartByContent) {
     EXPECT_EQ(parse("{\"verts\": [[0, 0], [1, 0], [0, 1]]}").records.size(), 2U);
 }
 
-}  // namespace
+}  // namespace surveyed_test
 }  // namespace ispace::cad

@@ -9,7 +9,7 @@
 #include "support/test_import.h"
 
 namespace ispace::cad {
-namespace {
+namespace svg_test {
 
 Document read(const std::string& svg, const ImportOptions& options = {}) {
     return readSvg(svg, "plan.svg", options, sceneSchemas());
@@ -604,5 +604,5 @@ TEST(SvgCss, Transforms) {
                 24, 1e-9);
 }
 
-}  // namespace
+}  // namespace svg_test
 }  // namespace ispace::cad

@@ -14,7 +14,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::calibration {
-namespace {
+namespace body_fit_test {
 
 Sensor laserAt(const std::string& id, double x, double y, double heading, double z = 0.3) {
     Laser laser;
@@ -181,5 +181,5 @@ TEST(BodyFit, RefusesWhatDeterminesNoPose) {
               "l2 scans at 1.20 m: wanted legs, below 0.67 m");
 }
 
-}  // namespace
+}  // namespace body_fit_test
 }  // namespace ispace::calibration

@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::calibration {
-namespace {
+namespace camera_fit_test {
 
 /// Where a person walks, and where the feet are.
 Pose2 walk(int i) {
@@ -119,5 +119,5 @@ TEST(CameraFit, RefusesPicturesThatTellNothing) {
     EXPECT_NE(refusal(shots.moments), "");
 }
 
-}  // namespace
+}  // namespace camera_fit_test
 }  // namespace ispace::calibration

@@ -13,7 +13,7 @@
 #include "base/file.h"
 
 namespace ispace::calibration {
-namespace {
+namespace drive_fit_test {
 
 const DriveParameters kReal{0.0206, 0.0207, 0.0883, {{-0.0058, 0.031}, Angle::degrees(-91)}};
 
@@ -117,5 +117,5 @@ TEST(DriveFit, PublishedDrivesGiveThePublishedParameters) {
     }
 }
 
-}  // namespace
+}  // namespace drive_fit_test
 }  // namespace ispace::calibration

@@ -19,7 +19,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::calibration {
-namespace {
+namespace occupancy_test {
 
 /// Returns the scans of a log with corrected poses.
 std::vector<PosedScan> carmenScans(const std::string& file) {
@@ -182,5 +182,5 @@ TEST(Occupancy, EvenScansOfCsailPredictTheOddOnes) {
     EXPECT_LT(agreement.bias, 0.04);
 }
 
-}  // namespace
+}  // namespace occupancy_test
 }  // namespace ispace::calibration

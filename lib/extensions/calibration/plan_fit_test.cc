@@ -12,7 +12,7 @@
 #include "sense/scan.h"
 
 namespace ispace::calibration {
-namespace {
+namespace plan_fit_test {
 
 Laser utm(double max_range = 30) {
     Laser laser;
@@ -161,5 +161,5 @@ TEST(PlanFit, RefusesScansThatSayTooLittle) {
                     .starts_with("scans of l1 do not fit the room: at the most likely pose "));
 }
 
-}  // namespace
+}  // namespace plan_fit_test
 }  // namespace ispace::calibration

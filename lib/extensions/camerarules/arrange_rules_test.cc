@@ -9,7 +9,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::camerarules {
-namespace {
+namespace arrange_rules_test {
 
 const std::string kOffice =
     "#env 1\n"
@@ -124,5 +124,5 @@ TEST(ArrangeRules, StandingCamerasSeeFacesToo) {
     EXPECT_EQ(camerasIn(scene, options, {"laser,range=1"}).candidate_value, 0);
 }
 
-}  // namespace
+}  // namespace arrange_rules_test
 }  // namespace ispace::camerarules

@@ -16,7 +16,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::camerarules {
-namespace {
+namespace camera_rules_test {
 
 const std::string kTwoZones =
     "ispace size=10,8,3\nzone id=door path=-1,-1;1,-1;1,1;-1,1\nzone id=desk1 "
@@ -325,5 +325,5 @@ TEST(CameraRules, PrivacyOfALevelIsTheViewAtItsDensity) {
     }
 }
 
-}  // namespace
+}  // namespace camera_rules_test
 }  // namespace ispace::camerarules

@@ -14,7 +14,7 @@
 #include "support/test_arrange_building.h"
 
 namespace ispace::camerarules {
-namespace {
+namespace layout_privacy_test {
 
 /// Of the lower storey.
 const std::vector<std::vector<PrivacyRule>> kRules = {{parsePrivacy("desk")}, {}};
@@ -98,5 +98,5 @@ TEST(LayoutPrivacy, HoldsAgainstCamerasAbove) {
     EXPECT_EQ(seen.privacy[0].cameras, std::vector<std::string>{"gallery/c"});
 }
 
-}  // namespace
+}  // namespace layout_privacy_test
 }  // namespace ispace::camerarules

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::camerarules {
-namespace {
+namespace private_floor_test {
 
 // One zone reaches out of the room, one lies behind a wall of boxes, two overlap, one is outdoors.
 constexpr const char* kRoom =
@@ -60,5 +60,5 @@ TEST(PrivateFloor, MeasuresEqualCamerasOnce) {
     EXPECT_EQ(floor.measured(), 2U) << "two views, and a laser sees no private floor";
 }
 
-}  // namespace
+}  // namespace private_floor_test
 }  // namespace ispace::camerarules

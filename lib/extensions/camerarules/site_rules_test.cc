@@ -6,7 +6,7 @@
 #include "extensions/camerarules/site_rules.h"
 
 namespace ispace::camerarules {
-namespace {
+namespace site_rules_test {
 
 /// Two storeys; each has a door in its south wall, and only the lower one a camera before it.
 SiteScene houseWithDoors() {
@@ -120,5 +120,5 @@ TEST(BuildingFacing, UnknownDoorsListThoseOfAllStoreys) {
               "building: g/hall");
 }
 
-}  // namespace
+}  // namespace site_rules_test
 }  // namespace ispace::camerarules

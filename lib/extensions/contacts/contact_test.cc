@@ -14,7 +14,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::contacts {
-namespace {
+namespace contact_test {
 
 /// Returns what a contact of the door or window `d1` reports.
 bool isOpen(const std::string& door) {
@@ -59,5 +59,5 @@ TEST(Contact, HasATopic) {
     EXPECT_EQ(topics[0].type, RosType::Bool);
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace ispace::contacts

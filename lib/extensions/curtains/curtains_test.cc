@@ -12,7 +12,7 @@
 #include "scene/placement_schemas.h"
 
 namespace ispace::curtains {
-namespace {
+namespace curtains_test {
 
 Scene sceneOf(const std::string& curtain) {
     testing::addCurtainsOnce();
@@ -57,5 +57,5 @@ TEST(Curtain, StopsLightAsFarAsItIsDrawn) {
     }
 }
 
-}  // namespace
+}  // namespace curtains_test
 }  // namespace ispace::curtains

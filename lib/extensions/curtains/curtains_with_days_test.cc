@@ -15,7 +15,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::curtains {
-namespace {
+namespace curtains_with_days_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -47,5 +47,5 @@ TEST(Curtain, LetsPeoplePass) {
     EXPECT_EQ(roomStates(world.scene()), (std::vector<RoomState>{{"c", "drawn", "0"}}));
 }
 
-}  // namespace
+}  // namespace curtains_with_days_test
 }  // namespace ispace::curtains

@@ -9,7 +9,7 @@
 #include "scene/placement_schemas.h"
 
 namespace ispace::curtains {
-namespace {
+namespace curtains_with_mqtt_test {
 
 TEST(Curtain, IsACoverOfHomeAssistant) {
     testing::addCurtainsOnce();
@@ -25,5 +25,5 @@ TEST(Curtain, IsACoverOfHomeAssistant) {
     EXPECT_EQ(messages[0].payload.find("state_topic"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace curtains_with_mqtt_test
 }  // namespace ispace::curtains

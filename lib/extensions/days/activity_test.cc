@@ -21,7 +21,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::days {
-namespace {
+namespace activity_test {
 
 using std::chrono::hours;
 using std::chrono::milliseconds;
@@ -513,5 +513,5 @@ TEST(ActivityDirector, ACrowdGivesUpInTurns) {
     for (std::int64_t i = 0; i < kPeople; ++i) EXPECT_EQ(log.at(i).text, "d is shut") << i;
 }
 
-}  // namespace
+}  // namespace activity_test
 }  // namespace ispace::days

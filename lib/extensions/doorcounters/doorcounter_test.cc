@@ -22,7 +22,7 @@
 #include "support/test_folder.h"
 
 namespace ispace::doorcounters {
-namespace {
+namespace doorcounter_test {
 
 using std::chrono::milliseconds;
 
@@ -240,5 +240,5 @@ TEST(DoorCounter, FieldsHaveItsCounts) {
     EXPECT_EQ(names, (std::vector<std::string>{"entered=3", "left=2", "present=1"}));
 }
 
-}  // namespace
+}  // namespace doorcounter_test
 }  // namespace ispace::doorcounters

@@ -8,7 +8,7 @@
 #include "extensions/mqtt/mqtt_topics.h"
 
 namespace ispace::doorcounters {
-namespace {
+namespace doorcounters_with_mqtt_test {
 
 TEST(DoorCounter, HasStatisticsInHomeAssistant) {
     testing::addDoorCountersOnce();
@@ -26,5 +26,5 @@ TEST(DoorCounter, HasStatisticsInHomeAssistant) {
             << messages[i].payload;
 }
 
-}  // namespace
+}  // namespace doorcounters_with_mqtt_test
 }  // namespace ispace::doorcounters

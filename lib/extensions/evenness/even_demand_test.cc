@@ -12,7 +12,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::evenness {
-namespace {
+namespace even_demand_test {
 
 /// Two halves, which a narrow gap joins.
 constexpr const char* kTwoRooms = "#env 1\nispace size=8,6,2.5\nwall from=0,-3 to=0,2.5\n";
@@ -185,5 +185,5 @@ TEST(EvenDemand, FindingCountsTheFloorOfAllRooms) {
               "seen by 2 or more sensors");
 }
 
-}  // namespace
+}  // namespace even_demand_test
 }  // namespace ispace::evenness

@@ -11,7 +11,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::expect {
-namespace {
+namespace expect_test {
 
 using State = Condition::State;
 using When = Expectation::When;
@@ -523,5 +523,5 @@ TEST(ParseExpectation, TakesRandomWords) {
     EXPECT_GT(judged, 10U);
 }
 
-}  // namespace
+}  // namespace expect_test
 }  // namespace ispace::expect

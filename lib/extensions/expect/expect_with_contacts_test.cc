@@ -9,7 +9,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::expect {
-namespace {
+namespace expect_with_contacts_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -37,5 +37,5 @@ TEST(Expect, JudgesWhatAContactReports) {
     EXPECT_TRUE(verdicts[1].is_met) << verdicts[1].reason;
 }
 
-}  // namespace
+}  // namespace expect_with_contacts_test
 }  // namespace ispace::expect

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::films {
-namespace {
+namespace run_picture_test {
 
 const Scene& room() {
     static const Scene kScene =
@@ -93,5 +93,5 @@ TEST(RasterOf, IsWhatThePngHas) {
     EXPECT_EQ(raster.at(20, 15), 0x336699U);
 }
 
-}  // namespace
+}  // namespace run_picture_test
 }  // namespace ispace::films

@@ -17,7 +17,7 @@
 #include "support/test_import.h"
 
 namespace ispace::gazebo {
-namespace {
+namespace sdf_import_test {
 
 std::string worldOf(const std::string& models) {
     return "<sdf version='1.9'>\n<world name='w'>\n" + models + "\n</world>\n</sdf>\n";
@@ -458,5 +458,5 @@ TEST(SdfImport, BadMeshesAreLeftOut) {
         << warningsOf(document);
 }
 
-}  // namespace
+}  // namespace sdf_import_test
 }  // namespace ispace::gazebo

@@ -16,7 +16,7 @@
 #include "support/test_folder.h"
 
 namespace ispace::gazebo {
-namespace {
+namespace sdf_includes_test {
 
 namespace fs = std::filesystem;
 
@@ -297,5 +297,5 @@ TEST_F(SdfIncludes, CirclesEnd) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace sdf_includes_test
 }  // namespace ispace::gazebo

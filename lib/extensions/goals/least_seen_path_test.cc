@@ -16,7 +16,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::goals {
-namespace {
+namespace least_seen_path_test {
 
 /// A corridor of 12 by 2 m with a zone of 1 m at either end.
 const std::string kCorridor =
@@ -250,5 +250,5 @@ TEST(LeastSeenPath, LeadsRoundWallsWithoutThickness) {
     EXPECT_NEAR(wayIn(room).seen.value(), 2, 1e-3);
 }
 
-}  // namespace
+}  // namespace least_seen_path_test
 }  // namespace ispace::goals

@@ -19,7 +19,7 @@
 #include "support/test_arrange_building.h"
 
 namespace ispace::goals {
-namespace {
+namespace least_seen_trip_test {
 
 /// Two storeys of 12 m by 8 m. The zone `a` lies in the west below, `b` in the west above.
 /// \param ground,upper further records of the storeys \param passages further records
@@ -121,7 +121,7 @@ ArrangedBuilding guarded(const SiteScene& building, int count, Optimizer optimiz
     ArrangeOptions options;
     options.strategy = goals[0].places.empty() ? Strategy::All : Strategy::List;
     options.density = {2, 2, 4};
-    options.cells = CellSize{0.2};
+    options.cells.emplace(CellSize{0.2});
     options.search.optimizer = optimizer;
     options.objective =
         std::make_shared<const PathObjective>(PathChoice{"g/a", "u/b"}, StoreyZone{0, "a"},
@@ -185,5 +185,5 @@ TEST(LeastSeenLayout, NeedsAWay) {
     EXPECT_THROW(guarded(house("", "", ""), 1, Optimizer::Swap, 360), UnmetError);
 }
 
-}  // namespace
+}  // namespace least_seen_trip_test
 }  // namespace ispace::goals

@@ -9,7 +9,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::goals {
-namespace {
+namespace localisation_test {
 
 Localisation localisedIn(const std::string& lines, double within = 1) {
     const Scene scene = sceneOf(lines);
@@ -74,5 +74,5 @@ TEST(Localisation, AFurtherSensorNeverRaisesAnError) {
     EXPECT_GT(two.share_within.value(), one.share_within.value());
 }
 
-}  // namespace
+}  // namespace localisation_test
 }  // namespace ispace::goals

@@ -13,7 +13,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::goals {
-namespace {
+namespace objectives_test {
 
 const std::string kGuarded =
     "#env 1\nispace id=room size=10,4,2.5\n"
@@ -153,5 +153,5 @@ TEST(ArrangeLocalise, PlacesReceiversThatHearATagTogether) {
     EXPECT_GE(found.bound, *found.value);
 }
 
-}  // namespace
+}  // namespace objectives_test
 }  // namespace ispace::goals

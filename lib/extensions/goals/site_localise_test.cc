@@ -15,7 +15,7 @@
 #include "support/test_arrange_building.h"
 
 namespace ispace::goals {
-namespace {
+namespace site_localise_test {
 
 SiteScene twoStoreys() {
     const std::string text =
@@ -101,5 +101,5 @@ TEST(LocalisedOver, CountsCellsByTheirArea) {
     EXPECT_GE(*all.share_within, std::min(*rooms[0].share_within, *rooms[1].share_within));
 }
 
-}  // namespace
+}  // namespace site_localise_test
 }  // namespace ispace::goals

@@ -24,7 +24,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::heads {
-namespace {
+namespace heads_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -256,5 +256,5 @@ TEST(HeadService, IsForHeads) {
     EXPECT_EQ(makeHeads({&room, 1}, 1), nullptr);
 }
 
-}  // namespace
+}  // namespace heads_test
 }  // namespace ispace::heads

@@ -16,7 +16,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::heads {
-namespace {
+namespace heads_with_ros_test {
 
 TEST(Head, IsTwoJointsOfItsRobot) {
     testing::addHeadsOnce();
@@ -39,5 +39,5 @@ TEST(Head, IsTwoJointsOfItsRobot) {
     EXPECT_TRUE(joints["velocity"][2].is_null()) << "unknown";
 }
 
-}  // namespace
+}  // namespace heads_with_ros_test
 }  // namespace ispace::heads

@@ -19,7 +19,7 @@
 #include "support/test_work.h"
 
 namespace ispace::ifc {
-namespace {
+namespace building_test {
 
 Building cabin(const std::string& name) {
     return readBuilding(ifcBytes(name), std::nullopt, ampleWork());
@@ -531,5 +531,5 @@ TEST(Building, PackedIsNotTrusted) {
     }
 }
 
-}  // namespace
+}  // namespace building_test
 }  // namespace ispace::ifc

@@ -17,7 +17,7 @@
 #include "support/test_import.h"
 
 namespace ispace::ifc {
-namespace {
+namespace ifc_building_test {
 
 /// Writes boxes as products of IFC4, in metres.
 class IfcBoxes {
@@ -233,5 +233,5 @@ TEST(IfcBuilding, AsRoomsOfABuildingPayItsBudget) {
     EXPECT_EQ(error.find("c.ifc"), std::string::npos) << error;
 }
 
-}  // namespace
+}  // namespace ifc_building_test
 }  // namespace ispace::ifc

@@ -11,7 +11,7 @@
 #include "support/test_import.h"
 
 namespace ispace::ifc {
-namespace {
+namespace ifc_import_test {
 
 Document readCabin(const std::string& name, const ImportOptions& options = {}) {
     return readIfc(ifcBytes(name), name, options, sceneSchemas());
@@ -326,5 +326,5 @@ TEST_P(Strangers, AreAsTheyShouldBe) {
     EXPECT_NEAR(zonesOf(document), GetParam().zone_area, 0.01 * GetParam().zone_area);
 }
 
-}  // namespace
+}  // namespace ifc_import_test
 }  // namespace ispace::ifc

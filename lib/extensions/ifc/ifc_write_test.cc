@@ -10,7 +10,7 @@
 
 namespace ispace::ifc {
 
-namespace {
+namespace ifc_write_test {
 
 TEST(IfcWrite, TextIsAsciiWithTheEscapesOfPart21) {
     EXPECT_EQ(stepText("a b"), "'a b'");
@@ -120,6 +120,6 @@ TEST(IfcWrite, FixturesHaveTheirClass) {
         EXPECT_NE(ifc.find(type), std::string::npos) << type;
 }
 
-}  // namespace
+}  // namespace ifc_write_test
 
 }  // namespace ispace::ifc

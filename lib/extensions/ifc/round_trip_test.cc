@@ -12,7 +12,7 @@
 
 namespace ispace::ifc {
 
-namespace {
+namespace round_trip_test {
 
 Document readBack(const std::string& records, const ImportOptions& options = {}) {
     const Document document = readRecordText("#env 1\n" + records, "room", sceneSchemas());
@@ -112,6 +112,6 @@ TEST(IfcRoundTrip, CornersOf45DegreesStayStraight) {
         }
 }
 
-}  // namespace
+}  // namespace round_trip_test
 
 }  // namespace ispace::ifc

@@ -18,7 +18,7 @@
 #include "support/test_work.h"
 
 namespace ispace::ifc {
-namespace {
+namespace tessellated_test {
 
 Document read(const std::string& bytes, const ImportOptions& options = {}) {
     return readIfc(bytes, "house.ifc", options, sceneSchemas());
@@ -196,5 +196,5 @@ TEST(IfcZip, RefusesBombsAndDamage) {
     EXPECT_NE(refusal(damaged.substr(0, 100)).find("damaged zip archive"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace tessellated_test
 }  // namespace ispace::ifc

@@ -14,7 +14,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::imus {
-namespace {
+namespace imu_run_test {
 
 using std::chrono::milliseconds;
 
@@ -102,5 +102,5 @@ TEST(ImuRun, ReadsMeansInTheAxesOnTheWay) {
     EXPECT_NEAR(off.accelerations.y, c * left - s * ahead, 1e-9);
 }
 
-}  // namespace
+}  // namespace imu_run_test
 }  // namespace ispace::imus

@@ -12,7 +12,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::imus {
-namespace {
+namespace inertia_test {
 
 constexpr double kGravity = 9.80665;
 
@@ -88,5 +88,5 @@ TEST(Imu, ReadsItsKeys) {
     EXPECT_EQ(read("model=mpu-6050").gyro.density, 0.005);
 }
 
-}  // namespace
+}  // namespace inertia_test
 }  // namespace ispace::imus

@@ -8,7 +8,7 @@
 #include <random>
 
 namespace ispace::judge {
-namespace {
+namespace assignment_test {
 
 double sumOf(const Matrix& gains, const std::vector<std::pair<std::size_t, std::size_t>>& pairs) {
     double sum = 0;
@@ -56,5 +56,5 @@ TEST(Assignment, OfNoRowOrColumnIsEmpty) {
     EXPECT_TRUE(bestAssignment(Matrix{3, 0}).empty());
 }
 
-}  // namespace
+}  // namespace assignment_test
 }  // namespace ispace::judge

@@ -16,7 +16,7 @@
 #include "sense/formats/ros_types.h"
 
 namespace ispace::judge {
-namespace {
+namespace judged_run_test {
 
 constexpr const char* kRobots = "t,id,x,y,heading_deg\n";
 constexpr const char* kPeople = "t,id,x,y,heading_deg,speed,rotspeed_deg,phase\n";
@@ -225,5 +225,5 @@ TEST(TrackFiles, FaultsNameTheirLine) {
               "and 9th; this has 4");
 }
 
-}  // namespace
+}  // namespace judged_run_test
 }  // namespace ispace::judge

@@ -15,7 +15,7 @@
 #include "base/error.h"
 
 namespace ispace::judge {
-namespace {
+namespace track_metrics_test {
 
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
@@ -299,5 +299,5 @@ TEST(TrackMetrics, TooManyPairsAreRefused) {
     EXPECT_THROW(static_cast<void>(identityOf(run)), UsageError);
 }
 
-}  // namespace
+}  // namespace track_metrics_test
 }  // namespace ispace::judge

@@ -17,7 +17,7 @@
 #include "sim/world.h"
 
 namespace ispace::learning {
-namespace {
+namespace learning_test {
 
 Scene sceneOf(const std::string& environment, const std::string& layout = "") {
     const Document room = readRecordText("#env 1\n" + environment, "room.env", sceneSchemas());
@@ -499,5 +499,5 @@ TEST(LearningTasks, FurnitureVariantsAreRoomsOfTheirNumber) {
     EXPECT_NE(one.records, scene.records);
 }
 
-}  // namespace
+}  // namespace learning_test
 }  // namespace ispace::learning

@@ -22,7 +22,7 @@
 #include "sim/world.h"
 
 namespace ispace::leds {
-namespace {
+namespace leds_test {
 
 using std::chrono::milliseconds;
 
@@ -123,5 +123,5 @@ TEST(Led, GoesWithItsRobot) {
     EXPECT_GT(redness(), 150);
 }
 
-}  // namespace
+}  // namespace leds_test
 }  // namespace ispace::leds

@@ -23,7 +23,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::locks {
-namespace {
+namespace locks_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -264,5 +264,5 @@ TEST(LockService, IsForDoorsWithLocks) {
     EXPECT_EQ(makeLocks({&room, 1}, 1), nullptr);
 }
 
-}  // namespace
+}  // namespace locks_test
 }  // namespace ispace::locks

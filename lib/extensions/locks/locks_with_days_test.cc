@@ -19,7 +19,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::locks {
-namespace {
+namespace locks_with_days_test {
 
 using days::readDayPlan;
 using days::readDays;
@@ -307,5 +307,5 @@ TEST_F(LockRole, KeepsADoorOpenForPeople) {
     EXPECT_LT(world_.status(*world_.moverNamed("ann")).pose.position.x, 4.6);
 }
 
-}  // namespace
+}  // namespace locks_with_days_test
 }  // namespace ispace::locks

@@ -9,7 +9,7 @@
 #include "scene/placement_schemas.h"
 
 namespace ispace::locks {
-namespace {
+namespace locks_with_mqtt_test {
 
 TEST(LockChecks, AreLocksOfHomeAssistant) {
     testing::addLocksOnce();
@@ -31,5 +31,5 @@ TEST(LockChecks, AreLocksOfHomeAssistant) {
     EXPECT_EQ(mqtt::payloadOf("locked", "1", true, door.find("locked")), "ON");
 }
 
-}  // namespace
+}  // namespace locks_with_mqtt_test
 }  // namespace ispace::locks

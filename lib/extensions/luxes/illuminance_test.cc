@@ -17,7 +17,7 @@
 #include "trace/render/lights.h"
 
 namespace ispace::luxes {
-namespace {
+namespace illuminance_test {
 
 /// Returns the illuminance at the first sensor of a room that is 2.5 m high.
 double luxIn(const std::string& room, const std::string& layout, const TakerOptions& options = {},
@@ -194,5 +194,5 @@ TEST(Lux, ReadsItsKeys) {
     EXPECT_EQ(read("model=bh1750fvi").resolution, 1);
 }
 
-}  // namespace
+}  // namespace illuminance_test
 }  // namespace ispace::luxes

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::luxes {
-namespace {
+namespace luxes_with_appliances_test {
 
 // Before the schemas are asked for.
 const bool kAppliancesAdded = [] {
@@ -36,5 +36,5 @@ TEST(Lux, SeesTheLightOfAScreen) {
     EXPECT_NEAR(seen("hold"), 260.0 / (9 * 4 * 3), 1e-9);
 }
 
-}  // namespace
+}  // namespace luxes_with_appliances_test
 }  // namespace ispace::luxes

@@ -11,7 +11,7 @@
 #include "support/test_import.h"
 
 namespace ispace::maps {
-namespace {
+namespace aria_map_test {
 
 const std::string kMap =
     "2D-Map\n"
@@ -211,5 +211,5 @@ void expectArea(const std::string& file, double area, const ImportOptions& optio
 TEST(AriaMap, LinesThatMissEachOther) { expectArea("ActivMediaLab.map", 38.2); }
 TEST(AriaMap, ClosedLines) { expectArea("triangle.map", 103.4); }
 
-}  // namespace
+}  // namespace aria_map_test
 }  // namespace ispace::maps

@@ -4,7 +4,7 @@
 #include "support/test_import.h"
 
 namespace ispace::maps {
-namespace {
+namespace grid_map_test {
 
 ImportOptions withResolution(double metres) {
     ImportOptions options;
@@ -74,5 +74,5 @@ TEST(GridMap, SurvivesDamage) {
                   [](const std::string& bytes) { gridText(bytes); });
 }
 
-}  // namespace
+}  // namespace grid_map_test
 }  // namespace ispace::maps

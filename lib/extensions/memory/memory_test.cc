@@ -17,7 +17,7 @@
 #include "server/session.h"
 
 namespace ispace::memory {
-namespace {
+namespace memory_test {
 
 constexpr std::string_view kRoom = R"(#env 1
 fence path=-4,-3;4,-3;4,3;-4,3 closed=yes height=2.8
@@ -289,5 +289,5 @@ TEST(Memory, IsNoneWithoutVolumesAndTags) {
     EXPECT_EQ(makeMemory({&room, 1}, 1), nullptr);
 }
 
-}  // namespace
+}  // namespace memory_test
 }  // namespace ispace::memory

@@ -15,7 +15,7 @@
 #include "support/test_import.h"
 
 namespace ispace::meshes {
-namespace {
+namespace cloud_plan_test {
 
 using Points = std::vector<std::array<double, 3>>;
 
@@ -285,5 +285,5 @@ TEST(CloudPlan, DamageIsAnError) {
             kRounds);
 }
 
-}  // namespace
+}  // namespace cloud_plan_test
 }  // namespace ispace::meshes

@@ -20,7 +20,7 @@
 #include "support/test_paths.h"
 
 namespace ispace::meshes {
-namespace {
+namespace mesh_file_test {
 
 using Vertex = std::array<float, 3>;
 
@@ -484,5 +484,5 @@ TEST_F(MeshFile, IsAPlanWhenItIsCut) {
     EXPECT_TRUE(isPlan(mesh, "room.obj", options, sceneSchemas()));
 }
 
-}  // namespace
+}  // namespace mesh_file_test
 }  // namespace ispace::meshes

@@ -12,7 +12,7 @@
 #include "support/test_import.h"
 
 namespace ispace::meshes {
-namespace {
+namespace mesh_storeys_test {
 
 bool contains(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
@@ -69,5 +69,5 @@ TEST(MeshesOfBuildings, AreReadAndPaidForOnce) {
     EXPECT_EQ(readBuilding(storeys, name, options).storeys.size(), 3U);
 }
 
-}  // namespace
+}  // namespace mesh_storeys_test
 }  // namespace ispace::meshes

@@ -9,7 +9,7 @@
 #include "support/test_import.h"
 
 namespace ispace::meshes {
-namespace {
+namespace mesh_walls_test {
 
 /// A file of boxes as OBJ.
 class Boxes {
@@ -174,5 +174,5 @@ TEST(MeshWalls, CrossingsThatTakeLongAreRefusedAtOnce) {
     }
 }
 
-}  // namespace
+}  // namespace mesh_walls_test
 }  // namespace ispace::meshes

@@ -12,7 +12,7 @@
 #include "support/test_import.h"
 
 namespace ispace::meshes {
-namespace {
+namespace spelling_test {
 
 /// A cloud of the walls of a room of 6 m x 4 m, with these points beside it.
 std::string cloudWith(const std::string& strays, int count) {
@@ -80,5 +80,5 @@ TEST(MeshSpelling, CapitalsInStlAndBlanksInCollada) {
     EXPECT_EQ(corners("blanks.dae", collada("\n   ")), wanted);
 }
 
-}  // namespace
+}  // namespace spelling_test
 }  // namespace ispace::meshes

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::microphones {
-namespace {
+namespace microphones_with_appliances_test {
 
 // Before the schemas are asked for.
 const bool kAppliancesAdded = [] {
@@ -35,5 +35,5 @@ TEST(Microphone, HearsAnAppliance) {
     EXPECT_EQ(volume("hold"), 60);
 }
 
-}  // namespace
+}  // namespace microphones_with_appliances_test
 }  // namespace ispace::microphones

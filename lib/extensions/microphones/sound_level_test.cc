@@ -14,7 +14,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::microphones {
-namespace {
+namespace sound_level_test {
 
 /// Returns the level that a microphone at 0,0,1 reports.
 double levelIn(const std::string& room, const std::string& keys = "floor=0",
@@ -106,5 +106,5 @@ TEST(Microphone, ReadsItsKeys) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace sound_level_test
 }  // namespace ispace::microphones

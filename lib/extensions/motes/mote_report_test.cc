@@ -18,7 +18,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::motes {
-namespace {
+namespace mote_report_test {
 
 /// A report and the pose of its mote.
 struct PlacedReport : MoteReport {
@@ -211,5 +211,5 @@ TEST(Mote, ReadsItsKeys) {
     EXPECT_NE(testing::findings([&] { return read("radio=0"); }), "");
 }
 
-}  // namespace
+}  // namespace mote_report_test
 }  // namespace ispace::motes

@@ -24,7 +24,7 @@
 #include "support/test_talk.h"
 
 namespace ispace::mqtt {
-namespace {
+namespace mqtt_bridge_test {
 
 using testing::MemoryBroker;
 using testing::MemoryClient;
@@ -540,5 +540,5 @@ TEST_F(BridgeTest, CamerasHavePictures) {
     EXPECT_TRUE(broker.last("home/c1/image").starts_with("\x89PNG"));
 }
 
-}  // namespace
+}  // namespace mqtt_bridge_test
 }  // namespace ispace::mqtt

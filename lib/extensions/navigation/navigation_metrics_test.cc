@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ispace::navigation {
-namespace {
+namespace navigation_metrics_test {
 
 /// A run along x with the robot at `place(t)`, every 0.1 s from 0 to `end`.
 NavigationRun runOf(double end, const std::function<double(double)>& place) {
@@ -118,5 +118,5 @@ TEST(NavigationMetrics, AChangeOfRoomsIsNoWay) {
     EXPECT_LT(*figures.greatest_jerk, 1e-6);
 }
 
-}  // namespace
+}  // namespace navigation_metrics_test
 }  // namespace ispace::navigation

@@ -16,7 +16,7 @@
 #include "server/session.h"
 
 namespace ispace::nodes {
-namespace {
+namespace nodes_test {
 
 constexpr std::string_view kRoom = R"(#env 1
 fence path=-3,-3;3,-3;3,3;-3,3 closed=yes
@@ -286,5 +286,5 @@ TEST_F(NodesTest, TracksAreToldByWorldAndNodes) {
     EXPECT_TRUE(simulation_.tracks().present(world_.time()).empty());
 }
 
-}  // namespace
+}  // namespace nodes_test
 }  // namespace ispace::nodes

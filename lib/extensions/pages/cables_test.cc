@@ -8,7 +8,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::pages {
-namespace {
+namespace cables_test {
 
 constexpr const char* kRoom =
     "#env 1\n"
@@ -65,5 +65,5 @@ TEST(Cables, TakeTheShorterWayFromACorner) {
 
 TEST(Cables, AreNoneWithoutAPanel) { EXPECT_TRUE(cablesIn("laser at=1,1\n").empty()); }
 
-}  // namespace
+}  // namespace cables_test
 }  // namespace ispace::pages

@@ -20,7 +20,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::pages {
-namespace {
+namespace installation_test {
 
 Coverage coverageFor(const Scene& scene) {
     RayScenes worlds(scene.environment);
@@ -441,5 +441,5 @@ TEST(CoveragePage, LeavesOutTheSheetWithoutSensors) {
                   "The sensors see 100.00% of the indoor floor."}));
 }
 
-}  // namespace
+}  // namespace installation_test
 }  // namespace ispace::pages

@@ -10,7 +10,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::pages {
-namespace {
+namespace material_test {
 
 using testing::findings;
 
@@ -127,5 +127,5 @@ TEST(Material, TheHeadOfPricesNamesTheCurrency) {
               "item,number,unit,price,cost,currency\ncamera,2,piece,80,160,€\n");
 }
 
-}  // namespace
+}  // namespace material_test
 }  // namespace ispace::pages

@@ -7,7 +7,7 @@
 #include <map>
 
 namespace ispace::pages {
-namespace {
+namespace page_test {
 
 bool holds(const std::string& text, std::string_view part) {
     return text.find(part) != std::string::npos;
@@ -284,5 +284,5 @@ TEST(Page, PicturesInPicturesKeepTheirShapes) {
     EXPECT_EQ(curve[2], (Point2{40, 30}));
 }
 
-}  // namespace
+}  // namespace page_test
 }  // namespace ispace::pages

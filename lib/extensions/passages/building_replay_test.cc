@@ -19,7 +19,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::passages {
-namespace {
+namespace building_replay_test {
 
 constexpr SimTime kStep = std::chrono::milliseconds(20);
 constexpr SimTime kEnd = std::chrono::seconds(130);
@@ -275,5 +275,5 @@ TEST_F(LiftReaderTest, KeepsTheBeginningOfAPhaseThroughCalls) {
     EXPECT_EQ(at(1.1).calls, std::vector<std::size_t>()) << "back";
 }
 
-}  // namespace
+}  // namespace building_replay_test
 }  // namespace ispace::passages

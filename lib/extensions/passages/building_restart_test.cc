@@ -11,7 +11,7 @@
 #include "extensions/passages/passages_test.h"
 
 namespace ispace::passages {
-namespace {
+namespace building_restart_test {
 
 using testing::await;
 using testing::buildingOf;
@@ -197,5 +197,5 @@ TEST(BuildingRestart, EndsCommandsAndCountsOn) {
     EXPECT_GT(run.travel("ground/r1", {{{1, {9, 6}}}}).id, back.id);
 }
 
-}  // namespace
+}  // namespace building_restart_test
 }  // namespace ispace::passages

@@ -13,7 +13,7 @@
 #include "extensions/passages/passages_test.h"
 
 namespace ispace::passages {
-namespace {
+namespace building_run_test {
 
 using testing::await;
 using testing::buildingOf;
@@ -462,5 +462,5 @@ TEST(BuildingRun, PeopleReachStairsInACorner) {
     }
 }
 
-}  // namespace
+}  // namespace building_run_test
 }  // namespace ispace::passages

@@ -8,7 +8,7 @@
 #include "extensions/passages/passages_test.h"
 
 namespace ispace::passages {
-namespace {
+namespace building_script_test {
 
 using testing::buildingOf;
 using testing::optionsOf;
@@ -77,5 +77,5 @@ TEST(BuildingScript, ATripWithoutStairsIsToldAsUnreached) {
         BuildingRun::tripFindings(buildingOf("human id=ground/h at=6,4 trip=upper/6,4\n")).empty());
 }
 
-}  // namespace
+}  // namespace building_script_test
 }  // namespace ispace::passages

@@ -12,7 +12,7 @@
 #include "site/storeys.h"
 
 namespace ispace::passages {
-namespace {
+namespace hotel_test {
 
 using testing::optionsOf;
 using testing::poseOf;
@@ -85,5 +85,5 @@ TEST(BuildingRun, FourRobotsGoAboutAHotelForAnHour) {
     EXPECT_TRUE(hour.ways == anHour(is_sound).ways);
 }
 
-}  // namespace
+}  // namespace hotel_test
 }  // namespace ispace::passages

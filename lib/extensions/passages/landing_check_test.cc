@@ -10,7 +10,7 @@
 #include "site/storeys.h"
 
 namespace ispace::passages {
-namespace {
+namespace landing_check_test {
 
 using Messages = std::vector<std::string>;
 
@@ -86,5 +86,5 @@ TEST(LandingCheck, FindsCorridorsTooNarrowToPassThoseThatWait) {
     EXPECT_EQ(corridor("-1.2", "1.2", 6), Messages()) << "they wait at its side";
 }
 
-}  // namespace
+}  // namespace landing_check_test
 }  // namespace ispace::passages

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace ispace::passages {
-namespace {
+namespace lift_test {
 
 constexpr SimTime kStep = std::chrono::milliseconds(5);
 
@@ -111,5 +111,5 @@ TEST(Lift, OpensWhereItStandsAndIsHeld) {
     EXPECT_NEAR(lift.opening(time), 0.5, 1e-9);
 }
 
-}  // namespace
+}  // namespace lift_test
 }  // namespace ispace::passages

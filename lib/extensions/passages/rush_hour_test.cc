@@ -16,7 +16,7 @@
 #include "extensions/passages/passages_test.h"
 
 namespace ispace::passages {
-namespace {
+namespace rush_hour_test {
 
 using testing::buildingOf;
 using testing::kBuilding;
@@ -184,5 +184,5 @@ TEST(BuildingRun, ARideAloneTakesTheTimeOfItsClosedForm) {
     EXPECT_NEAR(left - entered, expected, 0.1 * expected);
 }
 
-}  // namespace
+}  // namespace rush_hour_test
 }  // namespace ispace::passages

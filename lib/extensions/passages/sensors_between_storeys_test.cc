@@ -9,7 +9,7 @@
 #include "extensions/passages/passages_test.h"
 
 namespace ispace::passages {
-namespace {
+namespace sensors_between_storeys_test {
 
 using testing::buildingOf;
 using testing::optionsOf;
@@ -62,5 +62,5 @@ TEST(SensorsBetweenStoreys, CountInEventsAsTheyStand) {
     EXPECT_EQ(events_after(30), Kinds{EventKind::Seen});
 }
 
-}  // namespace
+}  // namespace sensors_between_storeys_test
 }  // namespace ispace::passages

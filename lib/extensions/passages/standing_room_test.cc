@@ -13,7 +13,7 @@
 #include "scene/scene.h"
 
 namespace ispace::passages {
-namespace {
+namespace standing_room_test {
 
 using testing::buildingOf;
 using testing::optionsOf;
@@ -150,5 +150,5 @@ TEST(StandingRoom, IsNoMatterForATurnOnTheSpot) {
     EXPECT_NEAR(poseOf(run, "ground/h").heading.degrees(), 90, 1e-9);
 }
 
-}  // namespace
+}  // namespace standing_room_test
 }  // namespace ispace::passages

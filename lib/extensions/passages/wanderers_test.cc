@@ -9,7 +9,7 @@
 #include "extensions/passages/passages_test.h"
 
 namespace ispace::passages {
-namespace {
+namespace wanderers_test {
 
 using testing::buildingOf;
 using testing::optionsOf;
@@ -90,5 +90,5 @@ TEST(Wanderers, ACommandEndsWandering) {
     EXPECT_EQ(poseOf(run, "ground/r").position, at);
 }
 
-}  // namespace
+}  // namespace wanderers_test
 }  // namespace ispace::passages

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::pirs {
-namespace {
+namespace pir_run_test {
 
 using std::chrono::milliseconds;
 
@@ -60,5 +60,5 @@ TEST(PirRun, ATurnOnTheSpotIsNoMotion) {
     EXPECT_TRUE(turned);
 }
 
-}  // namespace
+}  // namespace pir_run_test
 }  // namespace ispace::pirs

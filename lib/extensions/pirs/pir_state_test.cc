@@ -11,7 +11,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::pirs {
-namespace {
+namespace pir_state_test {
 
 constexpr double kTall = 1.7;
 
@@ -160,5 +160,5 @@ TEST_F(PirTest, FormatsHoldItsOutput) {
     EXPECT_NE(written("npz").find("s1/motion.npy"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace pir_state_test
 }  // namespace ispace::pirs

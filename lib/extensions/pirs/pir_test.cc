@@ -9,7 +9,7 @@
 #include "support/test_sensors.h"
 
 namespace ispace::pirs {
-namespace {
+namespace pir_test {
 
 using testing::findings;
 using testing::sensorRecord;
@@ -60,5 +60,5 @@ TEST(Pir, DevicesHoldTheirOutput) {
     EXPECT_EQ(pir("model=hc-sr501 hold=60").hold, 60);
 }
 
-}  // namespace
+}  // namespace pir_test
 }  // namespace ispace::pirs

@@ -35,7 +35,7 @@
 #include "trace/render/render.h"
 
 namespace ispace::postures {
-namespace {
+namespace postures_test {
 
 using days::addPersonVerb;
 using days::DeedMoment;
@@ -1005,5 +1005,5 @@ TEST(Deeds, AreReadWithHints) {
     EXPECT_EQ(finding("stnds"), "`stnds` is no action, did you mean `stands`?");
 }
 
-}  // namespace
+}  // namespace postures_test
 }  // namespace ispace::postures

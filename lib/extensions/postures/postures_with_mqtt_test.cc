@@ -9,7 +9,7 @@
 #include "scene/placement_schemas.h"
 
 namespace ispace::postures {
-namespace {
+namespace postures_with_mqtt_test {
 
 TEST(Postures, AreSensorsOfHomeAssistant) {
     testing::addPosturesOnce();
@@ -25,5 +25,5 @@ TEST(Postures, AreSensorsOfHomeAssistant) {
     EXPECT_EQ(mqtt::payloadOf("posture", "fallen", true, human.find("posture")), "fallen");
 }
 
-}  // namespace
+}  // namespace postures_with_mqtt_test
 }  // namespace ispace::postures

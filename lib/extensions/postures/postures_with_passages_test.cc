@@ -18,7 +18,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::postures {
-namespace {
+namespace postures_with_passages_test {
 
 /// A run of two storeys, and a client of it.
 class House {
@@ -171,5 +171,5 @@ TEST(Postures, ThingsInHandsStayWhereTheirNameIsTaken) {
     EXPECT_EQ(house.run().roomOf("ground/ann"), 0U);
 }
 
-}  // namespace
+}  // namespace postures_with_passages_test
 }  // namespace ispace::postures

@@ -11,7 +11,7 @@
 #include "scene/scene.h"
 
 namespace ispace::postures {
-namespace {
+namespace postures_with_presence_test {
 
 TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
     testing::addPosturesOnce();
@@ -24,5 +24,5 @@ TEST(Postures, WanderersComeWithoutWhatPeopleCarry) {
     EXPECT_EQ(presence::readPaths(presence::parseWays("wander:2,5s"), room, 7).people.size(), 2U);
 }
 
-}  // namespace
+}  // namespace postures_with_presence_test
 }  // namespace ispace::postures

@@ -16,7 +16,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::postures {
-namespace {
+namespace postures_with_ros_test {
 
 TEST(Postures, AreMarkersOfRos) {
     testing::addPosturesOnce();
@@ -63,5 +63,5 @@ TEST(Postures, AreMarkersOfRos) {
     expect("posture=fallen", kCube, {1, 2 - 0.025 * h, 0.065 * h}, {1.3 * h, 0.3 * h, 0.13 * h});
 }
 
-}  // namespace
+}  // namespace postures_with_ros_test
 }  // namespace ispace::postures

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace::presence {
-namespace {
+namespace people_paths_test {
 
 TEST(PathCutter, CutsWaysIntoPieces) {
     PathCutter cutter;
@@ -44,5 +44,5 @@ TEST(PathCutter, ReadsTheRecordOfARun) {
     EXPECT_NEAR(ways.pieces[0].length, 0.3, 1e-12);
 }
 
-}  // namespace
+}  // namespace people_paths_test
 }  // namespace ispace::presence

@@ -11,7 +11,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::presence {
-namespace {
+namespace presence_demand_with_radars_test {
 
 /// Two halves, which a narrow gap joins.
 constexpr const char* kTwoRooms = "#env 1\nispace size=8,6,2.5\nwall from=0,-3 to=0,2.9\n";
@@ -78,5 +78,5 @@ TEST(ArrangePresence, RefusesSensorsWithoutSenseOfMotionAndWaysOfNobody) {
     EXPECT_THROW(arranged(scene, groupsOf(scene, {"radar"}), options), UnmetError);
 }
 
-}  // namespace
+}  // namespace presence_demand_with_radars_test
 }  // namespace ispace::presence

@@ -9,7 +9,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::presence {
-namespace {
+namespace presence_paths_test {
 
 TEST(Paths, AreReadFromAFolderOrWandered) {
     EXPECT_EQ(parseWays("evening").record, "evening");
@@ -46,5 +46,5 @@ TEST(Paths, OfWanderersFillTheRoom) {
     EXPECT_NE(other.pieces.front().place, ways.pieces.front().place);
 }
 
-}  // namespace
+}  // namespace presence_paths_test
 }  // namespace ispace::presence

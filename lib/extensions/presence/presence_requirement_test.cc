@@ -6,7 +6,7 @@
 #include "base/error.h"
 
 namespace ispace::presence {
-namespace {
+namespace presence_requirement_test {
 
 Presence someone() {
     return {{{"anna", 20, 0.75, 3}, {"bo", 0, 0, 0}, {"a=b", 10, 1, 0}}, {"", 30, 0.8333, 3}, {}};
@@ -63,5 +63,5 @@ TEST(PresenceRequirement, NamesPeopleInsteadOfAnUnknownOne) {
     EXPECT_TRUE(many.ends_with(", wanderer12 and 8 more")) << many;
 }
 
-}  // namespace
+}  // namespace presence_requirement_test
 }  // namespace ispace::presence

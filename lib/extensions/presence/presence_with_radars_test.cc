@@ -10,7 +10,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::presence {
-namespace {
+namespace presence_with_radars_test {
 
 constexpr const char* kRoom = "ispace size=8,6\n";
 constexpr double kStep = 0.1;  // s, between two moments
@@ -81,5 +81,5 @@ TEST(Presence, WithoutAWayIsNone) {
     EXPECT_TRUE(presence.people.empty());
 }
 
-}  // namespace
+}  // namespace presence_with_radars_test
 }  // namespace ispace::presence

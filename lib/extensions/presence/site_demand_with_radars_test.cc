@@ -18,7 +18,7 @@
 #include "support/test_arrange_building.h"
 
 namespace ispace::presence {
-namespace {
+namespace site_demand_with_radars_test {
 
 SiteScene twoStoreys(const std::string& more = "") {
     const std::string text =
@@ -151,5 +151,5 @@ TEST(BuildingDemand, SensorsServeTheirOwnStorey) {
     EXPECT_NEAR(*result.found.value, presenceIn(open, result, ways), 1e-6);
 }
 
-}  // namespace
+}  // namespace site_demand_with_radars_test
 }  // namespace ispace::presence

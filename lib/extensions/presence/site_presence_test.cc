@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace ispace::presence {
-namespace {
+namespace site_presence_test {
 
 TEST(BuildingPresence, SumsAreOfAllWays) {
     std::vector<Presence> storeys(2);
@@ -22,5 +22,5 @@ TEST(BuildingPresence, SumsAreOfAllWays) {
     EXPECT_DOUBLE_EQ(sum.sensors[1].marginal, 40.0 / 50);
 }
 
-}  // namespace
+}  // namespace site_presence_test
 }  // namespace ispace::presence

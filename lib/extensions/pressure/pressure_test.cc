@@ -16,7 +16,7 @@
 #include "server/session.h"
 
 namespace ispace::pressure {
-namespace {
+namespace pressure_test {
 
 using std::chrono::milliseconds;
 
@@ -308,5 +308,5 @@ TEST(Pressure, IsNoneWithoutSensors) {
     EXPECT_EQ(makePressure({&room, 1}, 1), nullptr);
 }
 
-}  // namespace
+}  // namespace pressure_test
 }  // namespace ispace::pressure

@@ -16,7 +16,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::projection {
-namespace {
+namespace projection_test {
 
 // 8 x 6 x 3 m; the projector is five metres before the wall at x = 4 and shows 1000 x 500 pixels
 // on 5 x 2.5 m of it.
@@ -304,5 +304,5 @@ TEST(Projection, ReportsSurfacesOfModels) {
     EXPECT_EQ(projectionPicture(projection, "t", 800).width(), 800);
 }
 
-}  // namespace
+}  // namespace projection_test
 }  // namespace ispace::projection

@@ -14,7 +14,7 @@
 #include "extensions/proofs/test_pose_floors.h"
 
 namespace ispace::proofs {
-namespace {
+namespace check_guards_test {
 
 constexpr std::int64_t kUnit = GuardCertificate::kUnit;
 
@@ -281,5 +281,5 @@ TEST(CheckGuards, TextSurvivesWritingAndReading) {
         std::string::npos);
 }
 
-}  // namespace
+}  // namespace check_guards_test
 }  // namespace ispace::proofs

@@ -20,7 +20,7 @@
 #include "support/test_results.h"
 
 namespace ispace::proofs {
-namespace {
+namespace over_poses_test {
 
 const FewestProof* fewestOf(const Arrangement& found) {
     return dynamic_cast<const FewestProof*>(found.proof.get());
@@ -434,5 +434,5 @@ TEST(OverPoses, RefusesSensorsThatItCannotBound) {
     EXPECT_NE(refusal(room, "laser:2", options).find("takes as many"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace over_poses_test
 }  // namespace ispace::proofs

@@ -12,7 +12,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::radars {
-namespace {
+namespace radar_fields_test {
 
 class RadarFormats : public ::testing::Test {
   protected:
@@ -90,5 +90,5 @@ TEST_F(RadarFormats, FormatsOfEqualReadingsRefuseIt) {
         EXPECT_THROW(static_cast<void>(makeFormat(format, sensors, {})), UsageError) << format;
 }
 
-}  // namespace
+}  // namespace radar_fields_test
 }  // namespace ispace::radars

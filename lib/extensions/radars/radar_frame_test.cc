@@ -11,7 +11,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::radars {
-namespace {
+namespace radar_frame_test {
 
 constexpr double kHeight = 0.22, kMiddle = kHeight / 2;
 
@@ -238,5 +238,5 @@ TEST_F(RadarTest, NoiseOfAMoverDoesNotDependOnOthers) {
     EXPECT_NE(detect(4)[1].range, alone.range);
 }
 
-}  // namespace
+}  // namespace radar_frame_test
 }  // namespace ispace::radars

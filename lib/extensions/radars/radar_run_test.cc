@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::radars {
-namespace {
+namespace radar_run_test {
 
 using std::chrono::milliseconds;
 
@@ -78,5 +78,5 @@ TEST(RadarRun, ARadarOnARobotCompensatesItsMotion) {
     EXPECT_NEAR(frame(world).detections[0].bearing.radians(), std::atan2(way.y, way.x), 1e-9);
 }
 
-}  // namespace
+}  // namespace radar_run_test
 }  // namespace ispace::radars

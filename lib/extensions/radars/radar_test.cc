@@ -9,7 +9,7 @@
 #include "support/test_sensors.h"
 
 namespace ispace::radars {
-namespace {
+namespace radar_test {
 
 using testing::findings;
 using testing::sensorRecord;
@@ -82,5 +82,5 @@ TEST(Radar, DevicesAreModulesAtSixtyGigahertz) {
     EXPECT_EQ(radar("model=iwr6843isk range=5").max_range, 5);
 }
 
-}  // namespace
+}  // namespace radar_test
 }  // namespace ispace::radars

@@ -21,7 +21,7 @@
 #include "sim/simulation.h"
 
 namespace ispace::radios {
-namespace {
+namespace radios_test {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -256,5 +256,5 @@ TEST(RadioService, IsForRadios) {
     EXPECT_EQ(makeRadios({&room, 1}, 1), nullptr);
 }
 
-}  // namespace
+}  // namespace radios_test
 }  // namespace ispace::radios

@@ -16,7 +16,7 @@
 #include "support/test_folder.h"
 
 namespace ispace::reality {
-namespace {
+namespace log_test {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
@@ -400,5 +400,5 @@ TEST(Logs, Csail) {
     EXPECT_TRUE(log.scans[100].poses.corrected);
 }
 
-}  // namespace
+}  // namespace log_test
 }  // namespace ispace::reality

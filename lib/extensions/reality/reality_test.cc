@@ -19,7 +19,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::reality {
-namespace {
+namespace reality_test {
 
 const std::string kRoom =
     "fence id=f path=0,0;8,0;8,6;0,6 closed=yes height=2.5\n"
@@ -557,5 +557,5 @@ TEST(Reality, OnCsailTheRoomOfTheEvenScansHoldsForTheOddOnes) {
     EXPECT_GT(fit.held_out, 0.2);
 }
 
-}  // namespace
+}  // namespace reality_test
 }  // namespace ispace::reality

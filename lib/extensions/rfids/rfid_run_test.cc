@@ -13,7 +13,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::rfids {
-namespace {
+namespace rfid_run_test {
 
 using std::chrono::milliseconds;
 
@@ -44,5 +44,5 @@ TEST(RfidRun, ItsRaysAreThoseOfTags) {
     EXPECT_EQ(loadOf(room, milliseconds(5), nullptr).beams, 1 + 1);
 }
 
-}  // namespace
+}  // namespace rfid_run_test
 }  // namespace ispace::rfids

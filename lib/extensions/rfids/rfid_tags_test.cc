@@ -12,7 +12,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::rfids {
-namespace {
+namespace rfid_tags_test {
 
 using Texts = std::vector<std::string>;
 
@@ -113,5 +113,5 @@ TEST(Rfid, ReadsItsKeys) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace rfid_tags_test
 }  // namespace ispace::rfids

@@ -9,7 +9,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::rfids {
-namespace {
+namespace rfids_with_postures_test {
 
 // Before the schemas are asked for.
 const bool kPosturesAdded = [] {
@@ -35,5 +35,5 @@ TEST(RfidTags, OfThingsAreInTheHand) {
         << "the person alone is in the field";
 }
 
-}  // namespace
+}  // namespace rfids_with_postures_test
 }  // namespace ispace::rfids

@@ -12,7 +12,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::robustness {
-namespace {
+namespace crowd_test {
 
 const std::string kHall =
     "ispace size=10,8,3\npillar id=p at=1,1\ndesk id=d at=-2,1.5 heading=20\n"
@@ -58,5 +58,5 @@ TEST(Crowd, OfMorePeopleThanFitIsRefused) {
     EXPECT_THROW(static_cast<void>(CrowdFloor(scene).draw(9, {})), UnmetError);
 }
 
-}  // namespace
+}  // namespace crowd_test
 }  // namespace ispace::robustness

@@ -13,7 +13,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::robustness {
-namespace {
+namespace failures_test {
 
 using testing::kMixedRoom;
 
@@ -91,5 +91,5 @@ TEST(Failures, RefuseTooManySets) {
     EXPECT_EQ(worstFailures(scene, coverage, 1, {})[0].sensors.size(), 1U);
 }
 
-}  // namespace
+}  // namespace failures_test
 }  // namespace ispace::robustness

@@ -14,7 +14,7 @@
 #include "trace/ray_world.h"
 
 namespace ispace::robustness {
-namespace {
+namespace figure_samples_test {
 
 using testing::kMixedRoom;
 
@@ -125,5 +125,5 @@ TEST(Crowd, MeanHasItsStandardError) {
     EXPECT_EQ(sampled.met[0], 24);
 }
 
-}  // namespace
+}  // namespace figure_samples_test
 }  // namespace ispace::robustness

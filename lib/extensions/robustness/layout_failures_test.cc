@@ -7,7 +7,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::robustness {
-namespace {
+namespace layout_failures_test {
 
 TEST(Robust, ValueOfFailuresIsThatOfCoverage) {
     const Document layout = layoutFrom("laser id=l9 at=3,2,0.15 heading=180 range=4 fov=180\n");
@@ -35,5 +35,5 @@ TEST(Robust, ValueOfFailuresIsThatOfCoverage) {
     }
 }
 
-}  // namespace
+}  // namespace layout_failures_test
 }  // namespace ispace::robustness

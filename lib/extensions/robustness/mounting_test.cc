@@ -12,7 +12,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::robustness {
-namespace {
+namespace mounting_test {
 
 using testing::kMixedRoom;
 
@@ -55,5 +55,5 @@ TEST(Mounting, CrossesNoWall) {
                   -1);
 }
 
-}  // namespace
+}  // namespace mounting_test
 }  // namespace ispace::robustness

@@ -12,7 +12,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::robustness {
-namespace {
+namespace robust_cases_test {
 
 const std::string kMovedRoom =
     "#env 1\n"
@@ -35,7 +35,7 @@ std::shared_ptr<const LayoutCases> ofRooms(bool is_worst) {
         std::vector<NamedSite>{{"moved.env", std::make_shared<const ArrangeSite>(moved)}});
 }
 
-double coverageOf(const Scene& scene) {
+double gridShareOf(const Scene& scene) {
     RayScenes worlds(scene.environment);
     return measureCoverage(scene, worlds, {.exact = false}).report.coverage.grid.value_or(0);
 }
@@ -50,8 +50,8 @@ TEST(Robust, ValuesInRoomsAreThoseOfCoverage) {
         options.cases = ofRooms(is_worst);
         const Arrangement found = arranged(scene, groups, options);
         ASSERT_TRUE(found.cases);
-        const double here = coverageOf(withPlaced(scene, groups, found.sensors));
-        const double moved = coverageOf(withPlaced(movedRoom(), groups, found.sensors));
+        const double here = gridShareOf(withPlaced(scene, groups, found.sensors));
+        const double moved = gridShareOf(withPlaced(movedRoom(), groups, found.sensors));
         ASSERT_EQ(found.cases->shares.size(), 2U);
         EXPECT_NEAR(found.cases->shares[0], here, 1e-9);
         EXPECT_NEAR(found.cases->shares[1], moved, 1e-9);
@@ -72,7 +72,7 @@ TEST(Robust, TheWorstRoomGainsAgainstThePlainSearch) {
     const Arrangement robust = arranged(scene, groups, options);
     const Scene& moved = movedRoom();
     const double before =
-        std::min(plain.coverage, coverageOf(withPlaced(moved, groups, plain.sensors)));
+        std::min(plain.coverage, gridShareOf(withPlaced(moved, groups, plain.sensors)));
     EXPECT_GT(robust.cases->worst, before + 0.001);
     EXPECT_EQ(robust.candidate_value, robust.bound);  // proven
     for (const Placement& sensor : robust.sensors) EXPECT_GT(sensor.pose.position.z, 0);
@@ -133,7 +133,7 @@ TEST(Robust, ValuesOfMountingsAreThoseOfTheMountedSensors) {
                 const auto errors = options.cases->errorsIn(scene.environment, 0, k);
                 Scene mounted = whole;
                 for (Sensor& sensor : mounted.sensors) sensor.pose = errors->actual(sensor);
-                const double share = coverageOf(mounted);
+                const double share = gridShareOf(mounted);
                 EXPECT_NEAR(found.cases->shares[k], share, 1e-9);
                 least = std::min(least, share);
                 sum += share / kSearchedSamples;
@@ -169,7 +169,7 @@ TEST(Robust, ValuesAmongPeopleAreThoseOfCoverage) {
     double sum = 0;
     for (std::uint64_t k = 0; k < kSearchedSamples; ++k) {
         const Crowd crowd = floor.draw(3, {.seed = 7, .frame = k});
-        const double share = coverageOf(withCrowd(whole, crowd));
+        const double share = gridShareOf(withCrowd(whole, crowd));
         EXPECT_NEAR(found.cases->shares[k], share, 1e-9);
         sum += share / kSearchedSamples;
     }
@@ -195,5 +195,5 @@ TEST(Robust, MeanHasItsStandardError) {
     EXPECT_NEAR(standardErrorOf(values), 0.1, 1e-15);  // sqrt(2 * 0.1^2 / 1 / 2)
 }
 
-}  // namespace
+}  // namespace robust_cases_test
 }  // namespace ispace::robustness

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace ispace::robustness {
-namespace {
+namespace robustness_report_test {
 
 TEST(RobustnessReport, ACrowdOfOneMomentHasNoQuantiles) {
     Robustness robustness;
@@ -24,5 +24,5 @@ TEST(RobustnessReport, ACrowdOfOneMomentHasNoQuantiles) {
               std::vector<std::string>{"90% is met with the people of the scene"});
 }
 
-}  // namespace
+}  // namespace robustness_report_test
 }  // namespace ispace::robustness

@@ -18,7 +18,7 @@
 #include "support/test_arrange_building.h"
 
 namespace ispace::robustness {
-namespace {
+namespace site_cases_test {
 
 SiteScene buildingOf(const std::string& text) {
     return makeSiteScene(readBuilding(text, "house.yaml", {}), {}, {});
@@ -281,5 +281,5 @@ TEST(BuildingCases, AFailedSensorMayBeInAnyStorey) {
     EXPECT_NE(result.found.cases->failed[0].find('/'), std::string::npos) << "across the site";
 }
 
-}  // namespace
+}  // namespace site_cases_test
 }  // namespace ispace::robustness

@@ -11,7 +11,7 @@
 #include "site/storey_people.h"
 
 namespace ispace::robustness {
-namespace {
+namespace site_robustness_test {
 
 SiteScene sceneOf(const std::string& text) {
     return makeSiteScene(readBuilding(text, "house.yaml", {}), {}, {});
@@ -133,5 +133,5 @@ TEST(BuildingRobustness, SumsAreSharesOfAllFloor) {
                 (*coverage.coverage.exact - *fewer.coverage.exact) * coverage.indoor_area, 1e-6);
 }
 
-}  // namespace
+}  // namespace site_robustness_test
 }  // namespace ispace::robustness

@@ -10,7 +10,7 @@
 #include "extensions/ros/tests/ros_talk.h"
 
 namespace ispace::ros {
-namespace {
+namespace foxglove_dialogue_test {
 
 using nlohmann::json;
 using testing::numberAt;
@@ -433,5 +433,5 @@ TEST(Foxglove, ChannelsComeAndGoWithTheWorld) {
     EXPECT_FALSE(talk.dialogue->isEngaged()) << "its subscription is gone";
 }
 
-}  // namespace
+}  // namespace foxglove_dialogue_test
 }  // namespace ispace::ros

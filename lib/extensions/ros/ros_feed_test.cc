@@ -17,7 +17,7 @@
 #include "support/test_world.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_feed_test {
 
 using nlohmann::json;
 
@@ -427,5 +427,5 @@ TEST(RosFeed, EqualNamesGetNumbers) {
     EXPECT_NE(fed.number("/map_2/scan"), 0U) << "map is the world's frame";
 }
 
-}  // namespace
+}  // namespace ros_feed_test
 }  // namespace ispace::ros

@@ -14,7 +14,7 @@
 #include "support/test_world.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_log_test {
 
 /// The messages of a file by topic, without its index.
 struct LogContent {
@@ -166,5 +166,5 @@ TEST(RosLog, LeavesTheFeedWithoutSubscriptions) {
     for (const auto& [number, entry] : feed.entries()) EXPECT_EQ(entry.wanted, 0U);
 }
 
-}  // namespace
+}  // namespace ros_log_test
 }  // namespace ispace::ros

@@ -19,7 +19,7 @@
 #include "support/test_world.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_node_test {
 
 /// A world in steps of 0.1 s with a node.
 struct Noded {
@@ -420,5 +420,5 @@ TEST(RosQueries, SetParametersAtomicallyOneByOne) {
     EXPECT_TRUE(noded.room.simulation.paused());
 }
 
-}  // namespace
+}  // namespace ros_node_test
 }  // namespace ispace::ros

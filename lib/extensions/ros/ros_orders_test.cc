@@ -17,7 +17,7 @@
 #include "support/test_world.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_orders_test {
 
 TEST(RosOrders, TellsWhyARequestNeedsAToken) {
     testing::TestWorld room({Clock::Kind::Real, 1});
@@ -186,5 +186,5 @@ TEST(RosOrders, TellsWhyAGoalIsNone) {
     EXPECT_EQ(ordered.told.size(), 4U);
 }
 
-}  // namespace
+}  // namespace ros_orders_test
 }  // namespace ispace::ros

@@ -22,7 +22,7 @@
 #include "support/test_source.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_rooms_test {
 
 using nlohmann::json;
 
@@ -446,5 +446,5 @@ TEST(ServedRooms, RequestsToOneRoomThatFollowShareAChange) {
     EXPECT_EQ(served.worlds.world(1).scene().ids.back(), "m59");
 }
 
-}  // namespace
+}  // namespace ros_rooms_test
 }  // namespace ispace::ros

@@ -6,7 +6,7 @@
 #include "support/test_world.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_site_test {
 
 TEST(RosSite, PagesOfThisMachineAreLocal) {
     for (const char* origin : {"", "file://", "http://localhost", "http://localhost:8080",
@@ -111,5 +111,5 @@ TEST_F(RosSites, AreAskedByTheirOwnName) {
     EXPECT_EQ(site.file("/"), nullptr);
 }
 
-}  // namespace
+}  // namespace ros_site_test
 }  // namespace ispace::ros

@@ -11,7 +11,7 @@
 #include "sense/formats/ros_messages.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_text_test {
 
 using nlohmann::json;
 
@@ -147,5 +147,5 @@ TEST(RosText, LongListsOfClientsTakeTimeByTheirLength) {
     EXPECT_EQ(parseClientJson(text + "]")->size(), kObjects);
 }
 
-}  // namespace
+}  // namespace ros_text_test
 }  // namespace ispace::ros

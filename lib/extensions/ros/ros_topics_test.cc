@@ -11,7 +11,7 @@
 #include "support/test_paths.h"
 
 namespace ispace::ros {
-namespace {
+namespace ros_topics_test {
 
 using Words = std::vector<std::string>;
 
@@ -64,5 +64,5 @@ TEST(RosRows, EitherSendOrRead) {
     }
 }
 
-}  // namespace
+}  // namespace ros_topics_test
 }  // namespace ispace::ros

@@ -6,7 +6,7 @@
 #include <utility>
 
 namespace ispace::ros {
-namespace {
+namespace ros_type_hash_test {
 
 // As `ros2 topic info -v` of Jazzy prints them: nested types, lists, arrays, bytes, no fields.
 TEST(RosTypeHash, EqualsThatOfRos) {
@@ -38,5 +38,5 @@ TEST(RosTypeHash, EqualsThatOfRos) {
         EXPECT_EQ(rosTypeHash(type), "RIHS01_" + std::string(hash)) << nameOf(type);
 }
 
-}  // namespace
+}  // namespace ros_type_hash_test
 }  // namespace ispace::ros

@@ -12,7 +12,7 @@
 #include "extensions/ros/tests/ros_talk.h"
 
 namespace ispace::ros {
-namespace {
+namespace rosbridge_dialogue_test {
 
 using nlohmann::json;
 using testing::RosTalk;
@@ -529,5 +529,5 @@ TEST(Rosbridge, CancelsReplacesAndRefusesGoals) {
     EXPECT_EQ(talk.text()["result"], false);
 }
 
-}  // namespace
+}  // namespace rosbridge_dialogue_test
 }  // namespace ispace::ros

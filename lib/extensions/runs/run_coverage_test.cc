@@ -7,7 +7,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::runs {
-namespace {
+namespace run_coverage_test {
 
 /// r1 goes from x = -3 to x = 3 along y = 0 in 6 s, past two lasers that see 1 m around (-1, 0) and
 /// 1 m around (0, 0); h1 stands unseen.
@@ -107,5 +107,5 @@ TEST(RunCoverage, WhoJoinsLaterIsLookedAt) {
     EXPECT_EQ(run.members[1].time_shares, (std::vector<double>{0, 0, 1}));
 }
 
-}  // namespace
+}  // namespace run_coverage_test
 }  // namespace ispace::runs

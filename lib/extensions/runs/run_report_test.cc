@@ -7,7 +7,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::runs {
-namespace {
+namespace run_report_test {
 
 /// A robot drives for `end` seconds at 1 m/s past a laser that sees 1 m around (0, 0).
 RunCoverage runOf(int end) {
@@ -86,5 +86,5 @@ TEST(RunReport, OfAMoment) {
     EXPECT_NE(textOf(runOf(0)).find("t=0.00 to 0.00 s"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace run_report_test
 }  // namespace ispace::runs

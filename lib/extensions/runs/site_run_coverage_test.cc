@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace::runs {
-namespace {
+namespace site_run_coverage_test {
 
 RunCoverageMetrics metrics(double duration, double length, std::vector<double> shares,
                            std::size_t losses, double gap) {
@@ -65,5 +65,5 @@ TEST(SiteRunCoverage, OfNobodyIsEmpty) {
                     .members.empty());
 }
 
-}  // namespace
+}  // namespace site_run_coverage_test
 }  // namespace ispace::runs

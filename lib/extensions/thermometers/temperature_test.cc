@@ -12,7 +12,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::thermometers {
-namespace {
+namespace temperature_test {
 
 constexpr const char* kCold = "weather celsius=0\n";
 // 4 x 5 m: 30 W/K and 3.3 MJ/K.
@@ -188,5 +188,5 @@ TEST(Temperature, HasATopic) {
     EXPECT_EQ(topics[0].type, RosType::Temperature);
 }
 
-}  // namespace
+}  // namespace temperature_test
 }  // namespace ispace::thermometers

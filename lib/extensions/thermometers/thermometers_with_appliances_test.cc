@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::thermometers {
-namespace {
+namespace thermometers_with_appliances_test {
 
 // Before the schemas are asked for.
 const bool kAppliancesAdded = [] {
@@ -35,5 +35,5 @@ TEST(Thermometer, FeelsTheHeatOfAnAppliance) {
     EXPECT_EQ(power("hold"), 34);
 }
 
-}  // namespace
+}  // namespace thermometers_with_appliances_test
 }  // namespace ispace::thermometers

@@ -17,7 +17,7 @@
 #include "support/test_arrange.h"
 
 namespace ispace::tracking {
-namespace {
+namespace track_demand_test {
 
 /// Two halves, which a narrow gap joins.
 constexpr const char* kTwoRooms = "#env 1\nispace size=8,6,2.5\nwall from=0,-3 to=0,2.9\n";
@@ -352,5 +352,5 @@ TEST(TrackDemand, FindingSaysWhatIsLostAndTheLeastLoss) {
               "layout of these candidates loses less than 0.0 s");
 }
 
-}  // namespace
+}  // namespace track_demand_test
 }  // namespace ispace::tracking

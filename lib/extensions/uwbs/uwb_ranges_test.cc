@@ -19,7 +19,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::uwbs {
-namespace {
+namespace uwb_ranges_test {
 
 /// Returns the readings of all anchors in a room of 12 m and 2.5 m height.
 std::vector<UwbRanges> rangesIn(const std::string& room, const std::string& layout,
@@ -365,5 +365,5 @@ TEST(Uwb, ReadsItsKeys) {
     EXPECT_NE(testing::findings([&] { return read("slots=2.5"); }), "");
 }
 
-}  // namespace
+}  // namespace uwb_ranges_test
 }  // namespace ispace::uwbs

@@ -11,7 +11,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::uwbs {
-namespace {
+namespace uwb_views_test {
 
 TEST(Uwb, MeasuresDistances) {
     // At right angles in the plane of the tag, each distance is a coordinate.
@@ -35,5 +35,5 @@ TEST(Uwb, SeesTheSameAmongOtherAnchorsAndTags) {
     EXPECT_FALSE(seeAlike(alone, anchor_in("ispace size=8,6\nranger at=-3,0,2\n")));
 }
 
-}  // namespace
+}  // namespace uwb_views_test
 }  // namespace ispace::uwbs

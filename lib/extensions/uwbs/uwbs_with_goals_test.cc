@@ -8,7 +8,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace::uwbs {
-namespace {
+namespace uwbs_with_goals_test {
 
 using goals::Localisation;
 
@@ -36,5 +36,5 @@ TEST(Uwb, LocatesATagByThreeAnchors) {
               localisedIn(laser).mean);
 }
 
-}  // namespace
+}  // namespace uwbs_with_goals_test
 }  // namespace ispace::uwbs

@@ -11,7 +11,7 @@
 #include "support/test_readings.h"
 
 namespace ispace::uwbs {
-namespace {
+namespace uwbs_with_postures_test {
 
 // Before the schemas are asked for.
 const bool kPosturesAdded = [] {
@@ -69,5 +69,5 @@ TEST(UwbRanges, OfThingsAreThoseOfTheHand) {
     }
 }
 
-}  // namespace
+}  // namespace uwbs_with_postures_test
 }  // namespace ispace::uwbs

@@ -8,7 +8,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::views {
-namespace {
+namespace sensor_overlay_test {
 
 using testing::scene;
 
@@ -77,5 +77,5 @@ TEST(FloorColors, AreThoseOfTheSensorsThatSeeAPlace) {
     EXPECT_EQ(colors.at({99, 99}), none);
 }
 
-}  // namespace
+}  // namespace sensor_overlay_test
 }  // namespace ispace::views

@@ -6,7 +6,7 @@
 #include "base/error.h"
 
 namespace ispace::views {
-namespace {
+namespace view_spec_test {
 
 std::string errorOf(const std::string& text) {
     try {
@@ -67,5 +67,5 @@ TEST(ViewSpec, RefusesWhatItCannotMean) {
               "orbit[:AZIMUTH[,ELEVATION[,DISTANCE]]]");
 }
 
-}  // namespace
+}  // namespace view_spec_test
 }  // namespace ispace::views

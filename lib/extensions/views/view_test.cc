@@ -14,7 +14,7 @@
 #include "trace/render/render.h"
 
 namespace ispace::views {
-namespace {
+namespace view_test {
 
 using testing::scene;
 
@@ -287,5 +287,5 @@ TEST(RunRecord, PassesOverWhoJoinedLater) {
     EXPECT_EQ(scene.robots[0].pose, (Pose2{{1, 0.5}, Angle::degrees(90)}));
 }
 
-}  // namespace
+}  // namespace view_test
 }  // namespace ispace::views

@@ -11,7 +11,7 @@
 #include "support/test_world.h"
 
 namespace ispace::web {
-namespace {
+namespace web_frames_test {
 
 using std::chrono::milliseconds;
 using testing::TestWorld;
@@ -179,5 +179,5 @@ TEST(WebFrames, FollowTheWorldIntoAnotherScene) {
         << frame;
 }
 
-}  // namespace
+}  // namespace web_frames_test
 }  // namespace ispace::web

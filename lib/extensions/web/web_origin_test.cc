@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace::web {
-namespace {
+namespace web_origin_test {
 
 TEST(WebOrigin, KnowsItsOwnNames) {
     const WebOrigin origin("127.0.0.1", 8080);
@@ -51,5 +51,5 @@ TEST(WebOrigin, PolicyNamesTheSocket) {
     EXPECT_EQ(policy.find("unsafe"), std::string::npos) << policy;
 }
 
-}  // namespace
+}  // namespace web_origin_test
 }  // namespace ispace::web

@@ -10,7 +10,7 @@
 #include "support/test_client.h"
 
 namespace ispace::web {
-namespace {
+namespace web_server_test {
 
 using testing::Browser;
 using testing::WebRunning;
@@ -275,5 +275,5 @@ TEST(WebServer, WhoNeverReadsHoldsNoMoreThanAFrame) {
     EXPECT_TRUE(other.ask("PAUSE").starts_with("OK PAUSE"));
 }
 
-}  // namespace
+}  // namespace web_server_test
 }  // namespace ispace::web

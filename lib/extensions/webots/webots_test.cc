@@ -11,7 +11,7 @@
 #include "support/test_import.h"
 
 namespace ispace::webots {
-namespace {
+namespace webots_test {
 
 std::string worldOf(const std::string& nodes) { return "#VRML_SIM R2023b utf8\n" + nodes; }
 
@@ -315,5 +315,5 @@ TEST(Webots, DamagedFilesAreRefusedOrRead) {
         [](const std::string& bytes) { readWebots(bytes, "w.wbt", {}, sceneSchemas()); }, 300);
 }
 
-}  // namespace
+}  // namespace webots_test
 }  // namespace ispace::webots

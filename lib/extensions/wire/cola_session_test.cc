@@ -12,7 +12,7 @@
 #include "extensions/wire/tests/test_laser_host.h"
 
 namespace ispace::wire {
-namespace {
+namespace cola_session_test {
 
 using testing::answered;
 using testing::stepped;
@@ -361,5 +361,5 @@ TEST(ColaSession, PiecesDoNotMatter) {
     }
 }
 
-}  // namespace
+}  // namespace cola_session_test
 }  // namespace ispace::wire

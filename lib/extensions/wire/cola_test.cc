@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace ispace::wire {
-namespace {
+namespace cola_test {
 
 std::string bytes(std::initializer_list<int> values) {
     std::string out;
@@ -106,5 +106,5 @@ TEST(Cola, NumbersInB) {
     EXPECT_EQ(in.u16(), std::nullopt);
 }
 
-}  // namespace
+}  // namespace cola_test
 }  // namespace ispace::wire

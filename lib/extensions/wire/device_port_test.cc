@@ -16,7 +16,7 @@
 #include "support/test_client.h"
 
 namespace ispace::testing {
-namespace {
+namespace device_port_test {
 
 constexpr std::size_t kPacket = 20000, kRoom = 50000;
 
@@ -350,5 +350,5 @@ TEST(DevicePort, AFloodHarmsNobody) {
     sender.join();
 }
 
-}  // namespace
+}  // namespace device_port_test
 }  // namespace ispace::testing

@@ -11,7 +11,7 @@
 #include "support/test_client.h"
 
 namespace ispace::wire {
-namespace {
+namespace mjpeg_port_test {
 
 using testing::Client;
 using testing::step;
@@ -103,5 +103,5 @@ TEST(ServerMjpeg, AStreamBySteps) {
     EXPECT_TRUE(runs[0] == runs[1]);
 }
 
-}  // namespace
+}  // namespace mjpeg_port_test
 }  // namespace ispace::wire

@@ -7,7 +7,7 @@
 
 namespace ispace::wire {
 
-namespace {
+namespace mjpeg_session_test {
 
 using testing::TestHost;
 
@@ -264,6 +264,6 @@ TEST(PictureFiles, OneIsMadeForAllWhoAskMeanwhile) {
     EXPECT_EQ(newest(), third);
 }
 
-}  // namespace
+}  // namespace mjpeg_session_test
 
 }  // namespace ispace::wire

@@ -9,7 +9,7 @@
 
 namespace ispace::wire {
 
-namespace {
+namespace p2os_drive_test {
 
 using testing::Pioneer;
 using testing::TestHost;
@@ -251,6 +251,6 @@ TEST(P2osDrive, GetsTheDefaultsOfTheWheelsBack) {
     EXPECT_DOUBLE_EQ(host.world().status(0).accel, 0.3);
 }
 
-}  // namespace
+}  // namespace p2os_drive_test
 
 }  // namespace ispace::wire

@@ -8,7 +8,7 @@
 
 namespace ispace::wire {
 
-namespace {
+namespace p2os_packet_test {
 
 std::string bytes(std::initializer_list<int> values) {
     std::string out;
@@ -165,6 +165,6 @@ TEST(P2osPacket, ReadsNumbers) {
     EXPECT_EQ(p2osInteger(data, 4, 2), 0x7fff);
 }
 
-}  // namespace
+}  // namespace p2os_packet_test
 
 }  // namespace ispace::wire

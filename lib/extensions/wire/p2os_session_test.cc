@@ -10,7 +10,7 @@
 
 namespace ispace::wire {
 
-namespace {
+namespace p2os_session_test {
 
 using testing::Pioneer;
 using testing::TestHost;
@@ -367,6 +367,6 @@ TEST(P2osSession, SurvivesAnything) {
     EXPECT_FALSE(robot.session().closing());
 }
 
-}  // namespace
+}  // namespace p2os_session_test
 
 }  // namespace ispace::wire

@@ -11,7 +11,7 @@
 
 namespace ispace::wire {
 
-namespace {
+namespace p2os_transcript_test {
 
 using testing::TestHost;
 
@@ -164,6 +164,6 @@ TEST(P2osTranscript, OfPlayer) {
     EXPECT_FALSE(player.isClosing());
 }
 
-}  // namespace
+}  // namespace p2os_transcript_test
 
 }  // namespace ispace::wire

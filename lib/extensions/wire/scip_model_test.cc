@@ -8,7 +8,7 @@
 #include "support/test_layout.h"
 
 namespace ispace::wire {
-namespace {
+namespace scip_model_test {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
@@ -89,5 +89,5 @@ TEST(ScipModel, ClustersAreTheLeastDistance) {
     EXPECT_EQ(urg.numbers(ranges, 725, 725, 99), (std::vector<int>{3000}));
 }
 
-}  // namespace
+}  // namespace scip_model_test
 }  // namespace ispace::wire

@@ -11,7 +11,7 @@
 #include "extensions/wire/tests/test_laser_host.h"
 
 namespace ispace::wire {
-namespace {
+namespace scip_session_test {
 
 using testing::answered;
 using testing::stepped;
@@ -387,5 +387,5 @@ TEST(ScipSession, PiecesDoNotMatter) {
     }
 }
 
-}  // namespace
+}  // namespace scip_session_test
 }  // namespace ispace::wire

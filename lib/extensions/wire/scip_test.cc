@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace ispace::wire {
-namespace {
+namespace scip_test {
 
 // The values of this file are those of Hokuyo's specification and of logs of devices.
 
@@ -134,5 +134,5 @@ TEST(Scip, Sweeps) {
     EXPECT_EQ(statusOf("0044072501000", false), "0D");
 }
 
-}  // namespace
+}  // namespace scip_test
 }  // namespace ispace::wire

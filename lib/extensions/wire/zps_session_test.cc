@@ -7,7 +7,7 @@
 
 namespace ispace::wire {
 
-namespace {
+namespace zps_session_test {
 
 using testing::TestHost;
 
@@ -82,6 +82,6 @@ TEST(ZpsSession, FollowsChanges) {
     EXPECT_TRUE(session.closing());
 }
 
-}  // namespace
+}  // namespace zps_session_test
 
 }  // namespace ispace::wire

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 namespace ispace {
-namespace {
+namespace budget_test {
 
 TEST(Budget, FollowsTheSizeBetweenItsBounds) {
     EXPECT_EQ(Budget(0).limit(), Budget::kMinValue);
@@ -53,5 +53,5 @@ TEST(Budget, SaysHowToAllowMore) {
     EXPECT_EQ(Budget(0, {10}).excess(), "more than 10 units of work (`--max-work 20` allows more)");
 }
 
-}  // namespace
+}  // namespace budget_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 namespace ispace {
-namespace {
+namespace call_filter_test {
 
 /// Interprets a filter as the kernel does: only the instructions that ours consist of.
 std::uint32_t resultOf(const std::vector<sock_filter>& program, const seccomp_data& call) {
@@ -94,5 +94,5 @@ TEST(CallFilter, TheseMachinesHaveOne) {
 #endif
 }
 
-}  // namespace
+}  // namespace call_filter_test
 }  // namespace ispace

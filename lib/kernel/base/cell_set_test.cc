@@ -6,7 +6,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace cell_set_test {
 
 TEST(CellSet, AgreesWithPlainBits) {
     std::mt19937_64 random(7);
@@ -95,5 +95,5 @@ TEST(PartOf, RunsOfASet) {
     EXPECT_EQ(partOf(CellSet(10)).size(), 1U);
 }
 
-}  // namespace
+}  // namespace cell_set_test
 }  // namespace ispace

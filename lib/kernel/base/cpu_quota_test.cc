@@ -9,7 +9,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace cpu_quota_test {
 
 namespace fs = std::filesystem;
 
@@ -74,5 +74,5 @@ TEST_F(CpuQuotaTest, VersionOneNamesTheController) {
     EXPECT_EQ(quota(), 1);
 }
 
-}  // namespace
+}  // namespace cpu_quota_test
 }  // namespace ispace

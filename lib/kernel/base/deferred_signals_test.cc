@@ -9,7 +9,7 @@
 #include <thread>
 
 namespace ispace {
-namespace {
+namespace deferred_signals_test {
 
 std::atomic<int> taken;
 
@@ -59,5 +59,5 @@ TEST(DeferredSignals, EndAProcessAfterwards) {
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
 }
 
-}  // namespace
+}  // namespace deferred_signals_test
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace {
-namespace {
+namespace error_test {
 
 TEST(Diagnostic, NamesWhatPlaceItHas) {
     EXPECT_EQ((Diagnostic{"room.env", 14, 7, "wall has zero length"}).text(),
@@ -48,5 +48,5 @@ TEST(DisplayName, StandardInputHasAName) {
     EXPECT_EQ(displayName("a"), "a");
 }
 
-}  // namespace
+}  // namespace error_test
 }  // namespace ispace

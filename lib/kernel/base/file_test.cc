@@ -21,7 +21,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace file_test {
 
 namespace fs = std::filesystem;
 
@@ -371,5 +371,5 @@ TEST_F(FileTest, EndlessStreamsEnd) {
     EXPECT_NE(refusal.find("a file may have 4294967296"), std::string::npos) << refusal;
 }
 
-}  // namespace
+}  // namespace file_test
 }  // namespace ispace

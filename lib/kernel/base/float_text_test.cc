@@ -12,7 +12,7 @@
 #include <string>
 
 namespace ispace {
-namespace {
+namespace float_text_test {
 
 std::string written(float value) {
     std::array<char, kNumberRoom + kNumberSlack> buffer;
@@ -157,5 +157,5 @@ TEST(FloatText, TailWritesWhereTheTextEndsAndCutsTheRest) {
     EXPECT_EQ(text, "x=1.25,1234567 end");
 }
 
-}  // namespace
+}  // namespace float_text_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include <string>
 
 namespace ispace {
-namespace {
+namespace glob_test {
 
 TEST(Glob, MatchesNamesAsShellsDo) {
     struct Case {
@@ -80,5 +80,5 @@ TEST(Glob, TakesLinearTimeOfHostilePatterns) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
 }
 
-}  // namespace
+}  // namespace glob_test
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace {
-namespace {
+namespace golden_test {
 
 bool same(std::string_view expected, std::string_view actual, Tolerance tolerance = {0.01, 0}) {
     return textDifference(expected, actual, tolerance).empty();
@@ -52,5 +52,5 @@ TEST(WithoutHistory, EmptiesTheListInJson) {
     EXPECT_EQ(withoutHistory(R"({"history":[)"), R"({"history":[)");
 }
 
-}  // namespace
+}  // namespace golden_test
 }  // namespace ispace

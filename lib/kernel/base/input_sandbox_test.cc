@@ -10,7 +10,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace input_sandbox_test {
 
 namespace fs = std::filesystem;
 
@@ -40,5 +40,5 @@ TEST(InputSandbox, KeepsReadersInItsFolders) {
     EXPECT_TRUE(mayBeRead(name("out")));
 }
 
-}  // namespace
+}  // namespace input_sandbox_test
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace {
-namespace {
+namespace json_difference_test {
 
 using Lines = std::vector<std::string>;
 
@@ -54,5 +54,5 @@ TEST(JsonDifference, IsForJsonAlone) {
         EXPECT_FALSE(jsonDifferences("{}", text, {}, {})) << text;
 }
 
-}  // namespace
+}  // namespace json_difference_test
 }  // namespace ispace

@@ -7,7 +7,7 @@
 #include <limits>
 
 namespace ispace {
-namespace {
+namespace json_writer_test {
 
 TEST(JsonWriter, PutsCommasBetweenValues) {
     JsonWriter json;
@@ -54,5 +54,5 @@ TEST(JsonWriter, KeepsUtf8AndReplacesWhatIsNot) {
     EXPECT_EQ(quoted("\xf4\x90\x80\x80"), '"' + sign + sign + sign + sign + '"') << "too large";
 }
 
-}  // namespace
+}  // namespace json_writer_test
 }  // namespace ispace

@@ -5,7 +5,7 @@
 
 namespace ispace {
 
-namespace {
+namespace message_test {
 
 TEST(Utf8Length, KnowsTheBoundsOfEachLength) {
     EXPECT_EQ(utf8Length(""), 0U);
@@ -68,6 +68,6 @@ TEST(Suggest, MakesTheEndOfAMessage) {
     EXPECT_EQ(didYouMean("colour", kKeys), "");
 }
 
-}  // namespace
+}  // namespace message_test
 
 }  // namespace ispace

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-namespace {
+namespace number_test {
 
 TEST(ParseDouble, TakesWholeNumbersOnly) {
     EXPECT_EQ(parseDouble("1.5"), 1.5);
@@ -221,6 +221,6 @@ TEST(NumberTest, SizesForPeople) {
     EXPECT_EQ(formatBytes(std::size_t{5000} << 40U), "5000 TB");
 }
 
-}  // namespace
+}  // namespace number_test
 
 }  // namespace ispace

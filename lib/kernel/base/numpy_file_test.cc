@@ -6,7 +6,7 @@
 #include <cstring>
 
 namespace ispace {
-namespace {
+namespace numpy_file_test {
 
 template <typename Number>
 Number numberAt(std::string_view bytes, std::size_t at) {
@@ -75,5 +75,5 @@ TEST(ZipWriter, HasSizesOf64BitsOnlyWhereTheyAreNeeded) {
     EXPECT_EQ(numberAt<std::uint64_t>(kept, locator + 8), kLarge + end64);
 }
 
-}  // namespace
+}  // namespace numpy_file_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include <thread>
 
 namespace ispace {
-namespace {
+namespace ordered_calls_test {
 
 TEST(OrderedCalls, CallsWaitForThoseBeforeThem) {
     std::vector<int> called;
@@ -45,5 +45,5 @@ TEST(OrderedCalls, WhatThrowsIsTheLast) {
     EXPECT_EQ(called, 0);
 }
 
-}  // namespace
+}  // namespace ordered_calls_test
 }  // namespace ispace

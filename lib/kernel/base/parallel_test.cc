@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace parallel_test {
 
 TEST(AtOnce, BlocksAreTakenInOrderBeforeTheirMemoryIsUsedAgain) {
     constexpr std::size_t kBlocks = 1000;
@@ -52,5 +52,5 @@ TEST(AtOnce, PartsCoverEverythingOnce) {
     }
 }
 
-}  // namespace
+}  // namespace parallel_test
 }  // namespace ispace

@@ -16,7 +16,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace part_file_test {
 
 namespace fs = std::filesystem;
 
@@ -398,5 +398,5 @@ TEST_F(PartFileTest, KeptResultsDoNotGrowByThoseReplaced) {
     EXPECT_FALSE(fs::exists(file));
 }
 
-}  // namespace
+}  // namespace part_file_test
 }  // namespace ispace

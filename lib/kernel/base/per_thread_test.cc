@@ -7,7 +7,7 @@
 #include <thread>
 
 namespace ispace {
-namespace {
+namespace per_thread_test {
 
 std::atomic<int> alive = 0;
 
@@ -33,5 +33,5 @@ TEST(PerThread, HasOneOfEachTagInEachThread) {
     EXPECT_EQ((perThread<Counted, struct First>().value), 7);
 }
 
-}  // namespace
+}  // namespace per_thread_test
 }  // namespace ispace

@@ -5,7 +5,7 @@
 
 namespace ispace {
 
-namespace {
+namespace program_test {
 
 TEST(ShellQuote, LeavesPlainWordsAlone) {
     for (const char* word : {"arrange", "--sensor", "urg-04lx:3", "a/b.env", "0.25,0.25,16", "-X",
@@ -43,6 +43,6 @@ TEST(BaseName, IsTheLastPart) {
     EXPECT_EQ(baseName(""), "");
 }
 
-}  // namespace
+}  // namespace program_test
 
 }  // namespace ispace

@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-namespace {
+namespace random_test {
 
 using Floats = std::vector<float>;
 using random_loops::Philox;
@@ -316,6 +316,6 @@ TEST(Draw, AllAreIndependent) {
     expect_other({2, Purpose::Ultrasound, hashOf("l1"), 5}, 0);
 }
 
-}  // namespace
+}  // namespace random_test
 
 }  // namespace ispace

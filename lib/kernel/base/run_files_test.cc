@@ -14,7 +14,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace run_files_test {
 
 namespace fs = std::filesystem;
 
@@ -150,5 +150,5 @@ TEST_F(RunFilesTest, WithoutARunNothingIsKept) {
     EXPECT_EQ(refusal([&] { writeAll(path("room"), "newer"); }), "") << "of another run";
 }
 
-}  // namespace
+}  // namespace run_files_test
 }  // namespace ispace

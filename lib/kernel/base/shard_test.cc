@@ -6,7 +6,7 @@
 #include "base/error.h"
 
 namespace ispace {
-namespace {
+namespace shard_test {
 
 std::string refusal(const std::string& text) {
     try {
@@ -46,5 +46,5 @@ TEST(ShardTest, BlocksFollowEachOtherAndDifferByOneAtMost) {
         }
 }
 
-}  // namespace
+}  // namespace shard_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-namespace {
+namespace simd_test {
 
 constexpr int kSamples = 400'000;
 
@@ -83,6 +83,6 @@ TEST(SimdMath, ArcCosine) {
     EXPECT_LT(worst, 4e-7);
 }
 
-}  // namespace
+}  // namespace simd_test
 
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace spool_test {
 
 std::string contentOf(const Spool& spool) {
     std::string out;
@@ -83,5 +83,5 @@ TEST(Spool, LeavesNothingBehind) {
     EXPECT_TRUE(std::filesystem::is_empty(name));
 }
 
-}  // namespace
+}  // namespace spool_test
 }  // namespace ispace

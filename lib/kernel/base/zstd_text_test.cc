@@ -7,7 +7,7 @@
 #include "support/test_folder.h"
 
 namespace ispace {
-namespace {
+namespace zstd_text_test {
 
 class ZstdText : public ::testing::Test {
   protected:
@@ -92,5 +92,5 @@ TEST_F(ZstdText, RefusesOtherBytes) {
     EXPECT_THROW((void)read(bytes), FormatError) << "the checksum";
 }
 
-}  // namespace
+}  // namespace zstd_text_test
 }  // namespace ispace

@@ -19,7 +19,7 @@
 #include "support/test_sensors.h"
 
 namespace ispace {
-namespace {
+namespace camera_region_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -310,5 +310,5 @@ TEST(CameraRegion, DensityIsThatOfProjectedPlaces) {
     }
 }
 
-}  // namespace
+}  // namespace camera_region_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace clear_glass_test {
 
 /// A room whose middle wall has a large window.
 CoverageReport reportOf(const std::string& glass, const std::string& sensor) {
@@ -61,5 +61,5 @@ TEST(ClearGlass, HidesTagsFromReceivers) {
     EXPECT_GT(*open.sensors[0].area.exact, *clear.sensors[0].area.exact + 1);
 }
 
-}  // namespace
+}  // namespace clear_glass_test
 }  // namespace ispace

@@ -17,7 +17,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace coverage_exact_test {
 
 constexpr double kPi = std::numbers::pi;
 const std::string kAllAround = "ranger projection=spherical fov=360,180 ";
@@ -504,5 +504,5 @@ TEST(MeasureChanged, TakesTheViewsOfSensorsThatStay) {
     EXPECT_GT(cells_of("cube at=0,0", Edit::Kind::Add, "l1"), 0U) << "another room";
 }
 
-}  // namespace
+}  // namespace coverage_exact_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace coverage_places_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -125,5 +125,5 @@ TEST(CoveragePlaces, RangersInASolidSeeNothing) {
     }
 }
 
-}  // namespace
+}  // namespace coverage_places_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace coverage_test {
 
 TEST(Coverage, EmptyConvexRoomSeenWholeIsCoveredWhole) {
     for (const std::string room :
@@ -127,5 +127,5 @@ TEST(MakeTarget, FreeIsIndoorLessSolidsAtTheHeight) {
     EXPECT_EQ(makeTarget(scene.environment, CellCount{60, 40}, 1.01).free.count(), 2400U);
 }
 
-}  // namespace
+}  // namespace coverage_test
 }  // namespace ispace

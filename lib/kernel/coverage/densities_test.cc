@@ -16,7 +16,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace densities_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kClasses = 11, kRecognise = 3, kIdentify = 4;
@@ -343,5 +343,5 @@ TEST(Parallax, IsWhereSoManyAxesAreApart) {
     EXPECT_EQ(shares(0, 4), 0);
 }
 
-}  // namespace
+}  // namespace densities_test
 }  // namespace ispace

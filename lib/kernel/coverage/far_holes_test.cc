@@ -14,7 +14,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace far_holes_test {
 
 struct UnseenFloor {
     std::vector<Region> pieces;
@@ -113,5 +113,5 @@ TEST(FarHoles, NoSensor) {
     EXPECT_LT(expectSame(sceneOf("ispace size=5,5\nchair at=1,1\n"), ""), 1);
 }
 
-}  // namespace
+}  // namespace far_holes_test
 }  // namespace ispace

@@ -15,7 +15,7 @@
 #include "support/test_sensors.h"
 
 namespace ispace {
-namespace {
+namespace plane_cells_test {
 
 struct Room {
     explicit Room(const std::string& lines, int columns = 60, int rows = 40)
@@ -388,5 +388,5 @@ TEST(PlaneCells, SweptLaserSeesWhatNothingHides) {
     }
 }
 
-}  // namespace
+}  // namespace plane_cells_test
 }  // namespace ispace

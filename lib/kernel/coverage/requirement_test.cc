@@ -7,7 +7,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace requirement_test {
 
 using Of = Requirement::Of;
 
@@ -148,5 +148,5 @@ TEST(MustHaveZone, HintsAtTheZoneThatIsMeant) {
     }
 }
 
-}  // namespace
+}  // namespace requirement_test
 }  // namespace ispace

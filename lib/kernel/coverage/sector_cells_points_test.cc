@@ -13,7 +13,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace sector_cells_points_test {
 
 using Random = std::mt19937_64;
 
@@ -288,5 +288,5 @@ TEST(CellsBySectorPoints, NothingRoundsOnALattice) {
     EXPECT_LT(counts.unsure, counts.all / 10);
 }
 
-}  // namespace
+}  // namespace sector_cells_points_test
 }  // namespace ispace

@@ -14,7 +14,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace sector_cells_test {
 
 using Random = std::mt19937_64;
 
@@ -295,5 +295,5 @@ TEST(CellsBySector, NothingFromWithinASolidOrOutOfTheGrid) {
     EXPECT_EQ(parts.size(), 3U);
 }
 
-}  // namespace
+}  // namespace sector_cells_test
 }  // namespace ispace

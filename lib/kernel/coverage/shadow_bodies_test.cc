@@ -11,7 +11,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace shadow_bodies_test {
 
 constexpr Box2 kBox{{-20, -20}, {20, 20}};
 
@@ -193,5 +193,5 @@ TEST(CutsOf, LevelPlaneMeetsWhatReachesIt) {
     EXPECT_TRUE(cutsOf(pointersTo(bodies), far, 9).empty());
 }
 
-}  // namespace
+}  // namespace shadow_bodies_test
 }  // namespace ispace

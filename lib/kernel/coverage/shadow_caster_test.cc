@@ -13,7 +13,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace shadow_caster_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -410,5 +410,5 @@ TEST(ShadowCaster, TurningTheSceneChangesNothing) {
     }
 }
 
-}  // namespace
+}  // namespace shadow_caster_test
 }  // namespace ispace

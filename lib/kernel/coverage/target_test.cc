@@ -9,7 +9,7 @@
 #include "record/text.h"
 
 namespace ispace {
-namespace {
+namespace target_test {
 
 Environment yard() {
     static const Schemas kSchemas(environmentSchemas());
@@ -75,5 +75,5 @@ TEST(CellWeights, OfATargetOutsideIsNothing) {
     for (const double one : weightsOfCells(target, floor)) EXPECT_EQ(one, 0);
 }
 
-}  // namespace
+}  // namespace target_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace visible_area_test {
 
 struct Room {
     explicit Room(const std::string& lines, int columns = 60, int rows = 40)
@@ -141,5 +141,5 @@ TEST(CellsSeen, SlightTiltIsNearlyLevel) {
     EXPECT_LE(a.count() + b.count() - 2 * countCommon(a, b), 4U);
 }
 
-}  // namespace
+}  // namespace visible_area_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace watch_agrees_test {
 
 TEST(WatchAgrees, WithTheCellsOfCoverage) {
     const Scene scene = sceneOf(
@@ -38,5 +38,5 @@ TEST(WatchAgrees, WithTheCellsOfCoverage) {
     EXPECT_LE(different, compared / 500) << compared;
 }
 
-}  // namespace
+}  // namespace watch_agrees_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace body_test {
 
 using testing::areaOf;
 using testing::record;
@@ -278,5 +278,5 @@ TEST(Zone, IsPolygonOrRectangle) {
     EXPECT_GT(signedArea(zoneOutline(record("zone path=0,0;0,1;1,0"))), 0);
 }
 
-}  // namespace
+}  // namespace body_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "record/text.h"
 
 namespace ispace {
-namespace {
+namespace door_floor_test {
 
 Environment room(const std::string& records) {
     static const Schemas schemas(environmentSchemas());
@@ -122,5 +122,5 @@ TEST(DoorFloor, HasThePointsThatNoWallHides) {
     EXPECT_GT(hidden, 100);
 }
 
-}  // namespace
+}  // namespace door_floor_test
 }  // namespace ispace

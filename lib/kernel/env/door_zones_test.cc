@@ -11,7 +11,7 @@
 #include "record/text.h"
 
 namespace ispace {
-namespace {
+namespace door_zones_test {
 
 const Schemas& schemas() {
     static const Schemas kSchemas(environmentSchemas());
@@ -87,5 +87,5 @@ TEST(DoorZones, AsRecords) {
     EXPECT_EQ(records[2].list("path").size(), 4U);
 }
 
-}  // namespace
+}  // namespace door_zones_test
 }  // namespace ispace

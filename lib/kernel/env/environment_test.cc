@@ -13,7 +13,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace environment_test {
 
 using testing::document;
 using testing::environment;
@@ -418,5 +418,5 @@ TEST(Environment, SameForAnyRun) {
     EXPECT_EQ(a.inside(), b.inside());
 }
 
-}  // namespace
+}  // namespace environment_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace joined_rooms_test {
 
 using testing::environment;
 using testing::pointText;
@@ -176,5 +176,5 @@ TEST(SeveralRooms, SideBySideAndWithin) {
     EXPECT_DOUBLE_EQ(totalArea(with_cubes.level(0.15)->freeFloor()), 98);
 }
 
-}  // namespace
+}  // namespace joined_rooms_test
 }  // namespace ispace

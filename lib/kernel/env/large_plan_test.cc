@@ -10,7 +10,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace large_plan_test {
 
 using testing::buildingPlan;
 using testing::environment;
@@ -81,5 +81,5 @@ TEST(LargePlan, AGapIsFoundAsInASmallOne) {
     EXPECT_EQ(findings(many), findings(open));
 }
 
-}  // namespace
+}  // namespace large_plan_test
 }  // namespace ispace

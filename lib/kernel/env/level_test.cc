@@ -16,7 +16,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace level_test {
 
 using testing::environment;
 
@@ -213,5 +213,5 @@ TEST(Level, ManyThreadsShareOne) {
     }
 }
 
-}  // namespace
+}  // namespace level_test
 }  // namespace ispace

@@ -14,7 +14,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace mesh_cut_test {
 
 using testing::boxMesh;
 using testing::cut;
@@ -367,5 +367,5 @@ TEST(CutMeshes, AMillionTriangles) {
     EXPECT_LT(seconds, 5) << "not linear any more";
 }
 
-}  // namespace
+}  // namespace mesh_cut_test
 }  // namespace ispace

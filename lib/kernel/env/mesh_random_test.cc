@@ -13,7 +13,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace mesh_random_test {
 
 using testing::cut;
 using testing::meshed;
@@ -151,5 +151,5 @@ TEST(RandomMeshes, FacesInCommonAndSurfacesDrawnTwice) {
     EXPECT_FALSE(band.sheets.empty());
 }
 
-}  // namespace
+}  // namespace mesh_random_test
 }  // namespace ispace

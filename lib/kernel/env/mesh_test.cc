@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-namespace {
+namespace mesh_test {
 
 using testing::volume;
 
@@ -286,6 +286,6 @@ TEST(MeshBody, RefusesWhatReachesTooFar) {
               "");
 }
 
-}  // namespace
+}  // namespace mesh_test
 
 }  // namespace ispace

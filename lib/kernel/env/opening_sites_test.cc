@@ -5,7 +5,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace opening_sites_test {
 
 using testing::findings;
 
@@ -89,5 +89,5 @@ TEST(OpeningSites, TellsWhatDoesNotFit) {
               "higher\n");
 }
 
-}  // namespace
+}  // namespace opening_sites_test
 }  // namespace ispace

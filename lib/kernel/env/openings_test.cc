@@ -12,7 +12,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace openings_test {
 
 using testing::environment;
 using testing::findings;
@@ -349,5 +349,5 @@ TEST(Texts, LengthsHaveAtLeastTwoDigits) {
     EXPECT_EQ(lengthText(1234.5678), "1234.568");
 }
 
-}  // namespace
+}  // namespace openings_test
 }  // namespace ispace

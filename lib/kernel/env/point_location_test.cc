@@ -6,7 +6,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace point_location_test {
 
 Polygon square(double x, double y) { return {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}; }
 
@@ -128,5 +128,5 @@ TEST(PolygonIndex, TouchesFromBothSides) {
     EXPECT_TRUE(index.touching({-2e-4, 0.5}, 1e-4).empty());
 }
 
-}  // namespace
+}  // namespace point_location_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace projector_beam_test {
 
 std::optional<ProjectorBeam> beam(const std::string& keys) {
     return projectorBeam(testing::record("projector " + keys));
@@ -75,5 +75,5 @@ TEST(ProjectorBeam, IsOffWithoutLight) {
     EXPECT_FALSE(beam("at=0,0 on=yes") == beam("at=0,0 on=yes pan=1"));
 }
 
-}  // namespace
+}  // namespace projector_beam_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace scenes_test {
 
 using testing::environment;
 using testing::schemas;
@@ -135,5 +135,5 @@ TEST(Scenes, LRoomIsSeenBestFromOutside) {
     EXPECT_NEAR(bestArea(env, {1.01, 4}), 3 * std::sqrt(7.0) + 16 * std::asin(0.75), 0.3);
 }
 
-}  // namespace
+}  // namespace scenes_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace schemas_test {
 
 using testing::findings;
 using testing::record;
@@ -113,5 +113,5 @@ TEST(EnvironmentSchemas, RefusesWhatIsOutOfBounds) {
         EXPECT_EQ(findings(room + line + "\n"), "") << line;
 }
 
-}  // namespace
+}  // namespace schemas_test
 }  // namespace ispace

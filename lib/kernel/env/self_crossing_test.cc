@@ -11,7 +11,7 @@
 #include "geom/predicates.h"
 
 namespace ispace {
-namespace {
+namespace self_crossing_test {
 
 /// Compares all pairs of edges.
 bool anyCross(const Polygon& polygon) {
@@ -87,5 +87,5 @@ TEST(SelfCrossing, CombsOfAnyDirectionTakeNoSquareOfTheirTeeth) {
         << "it takes minutes";
 }
 
-}  // namespace
+}  // namespace self_crossing_test
 }  // namespace ispace

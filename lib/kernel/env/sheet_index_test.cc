@@ -11,7 +11,7 @@
 #include "geom/predicates.h"
 
 namespace ispace {
-namespace {
+namespace sheet_index_test {
 
 /// Places on sheets, at their ends, beside them and anywhere, each told as by all sheets in turn.
 TEST(SheetIndex, HoldsWhatASearchOfAllSheetsHolds) {
@@ -44,5 +44,5 @@ TEST(SheetIndex, HoldsWhatASearchOfAllSheetsHolds) {
     EXPECT_FALSE(SheetIndex({}).holds({0, 0}));
 }
 
-}  // namespace
+}  // namespace sheet_index_test
 }  // namespace ispace

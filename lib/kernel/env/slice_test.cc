@@ -11,7 +11,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace slice_test {
 
 using testing::boxMesh;
 using testing::cut;
@@ -112,5 +112,5 @@ TEST(BandOfMeshes, PartOfTheEnvironment) {
     EXPECT_EQ(room.height(), 2.5) << "of the walls";
 }
 
-}  // namespace
+}  // namespace slice_test
 }  // namespace ispace

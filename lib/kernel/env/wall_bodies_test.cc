@@ -14,7 +14,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace wall_bodies_test {
 
 using testing::environment;
 using testing::pointText;
@@ -283,5 +283,5 @@ TEST(WallJoints, ThinnerThanTheWeldIsASheet) {
     EXPECT_TRUE(body[0].prisms.empty());
 }
 
-}  // namespace
+}  // namespace wall_bodies_test
 }  // namespace ispace

@@ -15,7 +15,7 @@
 #include "support/test_scene.h"
 
 namespace ispace {
-namespace {
+namespace walls_test {
 
 using testing::environment;
 using testing::pointText;
@@ -311,5 +311,5 @@ TEST(WallCrossings, ManyAreCutShort) {
     EXPECT_EQ(wallCrossings(env.elements(), 20000).size(), 10000U);
 }
 
-}  // namespace
+}  // namespace walls_test
 }  // namespace ispace

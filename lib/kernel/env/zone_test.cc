@@ -8,7 +8,7 @@
 #include "record/text.h"
 
 namespace ispace {
-namespace {
+namespace zone_test {
 
 Environment room() {
     static const Schemas schemas(environmentSchemas());
@@ -110,5 +110,5 @@ TEST(ReadZone, RefusesWhatIsNone) {
         EXPECT_NE(refusal(text).find("is no zone: "), std::string::npos) << text << refusal(text);
 }
 
-}  // namespace
+}  // namespace zone_test
 }  // namespace ispace

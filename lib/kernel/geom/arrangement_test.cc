@@ -13,7 +13,7 @@
 #include "support/test_curves.h"
 
 namespace ispace {
-namespace {
+namespace arrangement_test {
 
 using Lines = std::vector<Segment2>;
 
@@ -335,5 +335,5 @@ TEST(Noding, EndsKeepTheirDoubles) {
                       1);
 }
 
-}  // namespace
+}  // namespace arrangement_test
 }  // namespace ispace

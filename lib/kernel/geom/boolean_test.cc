@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-namespace {
+namespace boolean_test {
 
 Polygon reversed(Polygon polygon) {
     std::reverse(polygon.begin(), polygon.end());
@@ -278,9 +278,9 @@ TEST(Difference, boundsCrossings) {
     EXPECT_FALSE(difference(kRoom, heap(150)).empty());
 }
 
-}  // namespace
+}  // namespace boolean_test
 
-namespace {
+namespace boolean_test {
 
 double reachOf(const Polygon& polygon, Vec2 direction) {
     double most = -std::numeric_limits<double>::infinity();
@@ -354,6 +354,6 @@ TEST(ConvexPair, ManyCorners) {
     EXPECT_NEAR(signedArea(sharedByConvex(a, b)) / lens, 1, 1e-9);
 }
 
-}  // namespace
+}  // namespace boolean_test
 
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace box_order_test {
 
 std::vector<Segment2> randomLines(std::size_t count, double extent) {
     std::mt19937_64 random(count);
@@ -89,5 +89,5 @@ TEST(BoxOrder, AThousandLinesInOnePlaceAreATreeLikeOthers) {
     EXPECT_TRUE(isTreeOf(orderOf(growing), growing.size()));
 }
 
-}  // namespace
+}  // namespace box_order_test
 }  // namespace ispace

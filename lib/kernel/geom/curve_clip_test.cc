@@ -12,7 +12,7 @@
 #include "support/test_overlay.h"
 
 namespace ispace {
-namespace {
+namespace curve_clip_test {
 
 Curve circleOf(Point2 center, double radius) {
     const Point2 east = center + Vec2{std::abs(radius), 0};
@@ -100,5 +100,5 @@ TEST(CutAlong, partsAddUpAndAreThoseOfAnOverlay) {
     }
 }
 
-}  // namespace
+}  // namespace curve_clip_test
 }  // namespace ispace

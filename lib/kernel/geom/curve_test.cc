@@ -9,10 +9,11 @@
 
 #include "geom/predicates.h"
 #include "support/test_curves.h"
+#include "support/test_overlay.h"
 
 namespace ispace {
 
-namespace {
+namespace curve_test {
 
 using std::numbers::pi;
 
@@ -24,11 +25,6 @@ Point2 onCircle(Point2 center, double radius, double degrees) {
 CurveEdge arc(Point2 center, double radius, double from, double to) {
     return {onCircle(center, radius, from), onCircle(center, radius, to),
             to > from ? radius : -radius, center};
-}
-
-Curve disc(Point2 center, double radius) {
-    return {arc(center, radius, 0, 90), arc(center, radius, 90, 240),
-            arc(center, radius, 240, 360)};
 }
 
 TEST(Curve, StraightCurvesAreWhatTheirPolygonsAre) {
@@ -150,9 +146,9 @@ TEST(Curve, ChordsOfDiscsHaveNoDoubledVertices) {
     EXPECT_TRUE(isStrictlyConvex(polygon));
 }
 
-}  // namespace
+}  // namespace curve_test
 
-namespace {
+namespace curve_test {
 
 TEST(Ellipse, OutlineHasItsArea) {
     for (const double radius : {1e-5, 0.001, 0.05, 0.45, 1.0, 5.0, 250.0}) {
@@ -234,6 +230,6 @@ TEST(Ellipse, TellsHowFarPointsLieOutside) {
     EXPECT_NEAR(flat.box().high.y, 2, 1e-12);
 }
 
-}  // namespace
+}  // namespace curve_test
 
 }  // namespace ispace

@@ -7,7 +7,7 @@
 #include "support/test_curves.h"
 
 namespace ispace {
-namespace {
+namespace gap_test {
 
 /// 8 m x 6 m, the wall opposite the start in two parts with an opening of this width at x = 4.1.
 std::vector<Segment2> openRoom(double width) {
@@ -131,5 +131,5 @@ TEST(FindGap, roomsWithSeveralWallsMissing) {
     EXPECT_EQ(gap->b, 1U);
 }
 
-}  // namespace
+}  // namespace gap_test
 }  // namespace ispace

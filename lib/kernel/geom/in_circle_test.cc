@@ -9,7 +9,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace in_circle_test {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
@@ -76,5 +76,5 @@ TEST(InCircle, AgreesWithExactNumbersNextToCircles) {
     EXPECT_GT(told, off * 99 / 100);
 }
 
-}  // namespace
+}  // namespace in_circle_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_overlay.h"
 
 namespace ispace {
-namespace {
+namespace overlay_property_test {
 
 TEST(Overlay, thousandEdgesAlongOneLine) {
     // Views that all end at one slanted wall, with ends of their own on it.
@@ -236,5 +236,5 @@ TEST(Overlay, CurvesHaveArcsAgain) {
     EXPECT_LT(totalArea(overlay.regions(in_both)), std::numbers::pi - 1e-5) << "chords";
 }
 
-}  // namespace
+}  // namespace overlay_property_test
 }  // namespace ispace

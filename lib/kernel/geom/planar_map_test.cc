@@ -12,7 +12,7 @@
 #include "support/test_curves.h"
 
 namespace ispace {
-namespace {
+namespace planar_map_test {
 
 std::vector<Region> facesOf(const std::vector<Segment2>& lines) {
     return boundedFaces(weld(lines));
@@ -313,5 +313,5 @@ TEST(BoundedFaces, smallAndFarAway) {
         EXPECT_EQ(facesOf(test::edgesOf(test::box(-far, -far, far, far))).size(), 1U);
 }
 
-}  // namespace
+}  // namespace planar_map_test
 }  // namespace ispace

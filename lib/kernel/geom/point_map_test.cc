@@ -7,7 +7,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace point_map_test {
 
 TEST(PointMap, HoldsWhatAMapHolds) {
     PointMap<int> points;
@@ -49,5 +49,5 @@ TEST(PointMap, GridsAreSpread) {
     }
 }
 
-}  // namespace
+}  // namespace point_map_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_curves.h"
 
 namespace ispace {
-namespace {
+namespace polygon_cgal_test {
 
 double distanceFrom(const Polygon& curve, Point2 p) {
     double nearest = 1e300;
@@ -269,5 +269,5 @@ TEST(Triangulate, isTheSameForRotatedCurves) {
     EXPECT_EQ(triangulate(region).triangles, triangles);
 }
 
-}  // namespace
+}  // namespace polygon_cgal_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_curves.h"
 
 namespace ispace {
-namespace {
+namespace polygon_test {
 
 TEST(Box2, growsFromEmpty) {
     Box2 box;
@@ -230,5 +230,5 @@ TEST(InteriorPoint, isInsideRandomRegions) {
     }
 }
 
-}  // namespace
+}  // namespace polygon_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "geom/point.h"
 
 namespace ispace {
-namespace {
+namespace pose_test {
 
 TEST(Point, vectorsAndPlaces) {
     EXPECT_EQ((Point2{1, 2} + Vec2{3, 4}), (Point2{4, 6}));
@@ -20,7 +20,7 @@ TEST(Point, vectorsAndPlaces) {
     EXPECT_EQ(dot(Vec2{1, 2}, Vec2{3, 4}), 11);
     EXPECT_EQ(perpendicular({1, 2}), (Vec2{-2, 1}));
     EXPECT_EQ(unitVector(Angle::degrees(90)), (Vec2{0, 1}));
-    EXPECT_EQ(distance({1, 1}, {4, 5}), 5);
+    EXPECT_EQ(distance(Point2{1, 1}, Point2{4, 5}), 5);
     EXPECT_EQ(length(Vec3{2, 3, 6}), 7);
     EXPECT_EQ((Point3{1, 2, 3} + 2 * Vec3{1, 0, 1}).onFloor(), (Point2{3, 2}));
 }
@@ -205,5 +205,5 @@ TEST(Rotation, IsExactAtQuarterTurns) {
     }
 }
 
-}  // namespace
+}  // namespace pose_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-namespace {
+namespace predicates_test {
 
 TEST(Orientation, plainCases) {
     EXPECT_EQ(orientation({0, 0}, {1, 0}, {1, 1}), Turn::Left);
@@ -87,9 +87,9 @@ TEST(Distance, toClosedSegment) {
     EXPECT_EQ(nearestPoint(s, {9, 3}), (Point2{4, 0}));
 }
 
-}  // namespace
+}  // namespace predicates_test
 
-namespace {
+namespace predicates_test {
 
 TEST(Parity, boxRoom) {
     const auto walls = test::edgesOf(test::box(0, 0, 8, 6));
@@ -154,6 +154,6 @@ TEST(Parity, errsBehindAFreeStandingWallWhereTheExactTestDoesNot) {
     EXPECT_TRUE(insideByParity({6, 5}, {2, 5}, walls));
 }
 
-}  // namespace
+}  // namespace predicates_test
 
 }  // namespace ispace

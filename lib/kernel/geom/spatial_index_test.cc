@@ -10,7 +10,7 @@
 #include "geom/predicates.h"
 
 namespace ispace {
-namespace {
+namespace spatial_index_test {
 
 std::vector<std::size_t> found(const BoxTree& tree, const Box2& window) {
     std::vector<std::size_t> out;
@@ -173,5 +173,5 @@ TEST(SegmentGrid, PointsBeyondTheBoxCountAsInTheNearestCell) {
     EXPECT_FALSE(holds({1e300, 0.5}, 0));
 }
 
-}  // namespace
+}  // namespace spatial_index_test
 }  // namespace ispace

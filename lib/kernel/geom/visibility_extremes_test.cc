@@ -17,7 +17,7 @@
 #include "support/test_visibility.h"
 
 namespace ispace {
-namespace {
+namespace visibility_extremes_test {
 
 using std::numbers::pi;
 using test::areaByRays;
@@ -208,5 +208,5 @@ TEST(SectorOf, SidesAlongALineOfSight) {
     }
 }
 
-}  // namespace
+}  // namespace visibility_extremes_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_curves.h"
 
 namespace ispace {
-namespace {
+namespace visibility_oracle_test {
 
 using test::VisibilityOracle;
 
@@ -109,5 +109,5 @@ TEST(VisibilityOracle, CrossingLines) {
     }
 }
 
-}  // namespace
+}  // namespace visibility_oracle_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace weld_test {
 
 using Indices = std::vector<std::uint32_t>;
 
@@ -48,5 +48,5 @@ TEST(FirstAtPlace, AsAMapFindsThem) {
         }
 }
 
-}  // namespace
+}  // namespace weld_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "support/test_cells.h"
 
 namespace ispace {
-namespace {
+namespace cells_test {
 
 using testing::cellsOf;
 using testing::largestPiece;
@@ -93,5 +93,5 @@ TEST(CellPieces, EqualsFloodOnNoise) {
     }
 }
 
-}  // namespace
+}  // namespace cells_test
 }  // namespace ispace

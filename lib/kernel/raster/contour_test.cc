@@ -14,7 +14,7 @@
 #include "support/test_cells.h"
 
 namespace ispace {
-namespace {
+namespace contour_test {
 
 using testing::cellsOf;
 using testing::largestPiece;
@@ -337,5 +337,5 @@ TEST(CellRegions, HolesBelongToTheInnermostOutline) {
     EXPECT_EQ(areas[1], 81 - 25);
 }
 
-}  // namespace
+}  // namespace contour_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "geom/predicates.h"
 
 namespace ispace {
-namespace {
+namespace grid_test {
 
 Polygon square(double x, double y, double side) {
     return {{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}};
@@ -199,5 +199,5 @@ TEST(Crossings, ASegmentThroughMiddlesNamesThem) {
     EXPECT_TRUE(pairs.empty());
 }
 
-}  // namespace
+}  // namespace grid_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-namespace {
+namespace morphology_test {
 
 using testing::cellsOf;
 using testing::rowsOf;
@@ -169,6 +169,6 @@ TEST(WidestPlace, EqualsBruteForce) {
     }
 }
 
-}  // namespace
+}  // namespace morphology_test
 
 }  // namespace ispace

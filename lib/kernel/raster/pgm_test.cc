@@ -8,7 +8,7 @@
 #include "base/error.h"
 
 namespace ispace {
-namespace {
+namespace pgm_test {
 
 using namespace std::string_literals;
 
@@ -99,5 +99,5 @@ TEST(Pgm, SurvivesEveryTruncationAndRandomBytes) {
     }
 }
 
-}  // namespace
+}  // namespace pgm_test
 }  // namespace ispace

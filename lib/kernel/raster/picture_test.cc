@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-namespace {
+namespace picture_test {
 
 std::string fileOf(const std::string& suffix) {
     return readAll(testing::sourcePath("tests/data/pictures/room.") + suffix);
@@ -183,6 +183,6 @@ TEST(Occupancy, TopRowOfThePictureIsTheHighest) {
     EXPECT_TRUE(freeCells(image, {}).contains(0, 1));
 }
 
-}  // namespace
+}  // namespace picture_test
 
 }  // namespace ispace

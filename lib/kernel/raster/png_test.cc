@@ -11,7 +11,7 @@
 #include "support/test_png.h"
 
 namespace ispace {
-namespace {
+namespace png_test {
 
 using namespace std::string_literals;
 using Samples = std::vector<std::uint16_t>;
@@ -214,5 +214,5 @@ TEST(EncodedPng, HasThePixelsOfLargeDrawings) {
     EXPECT_EQ(pixelsOf(pngOfDrawing(kColumns, kRows, pixels, kColumns)), pixels);
 }
 
-}  // namespace
+}  // namespace png_test
 }  // namespace ispace

@@ -7,7 +7,7 @@
 #include "support/test_schemas.h"
 
 namespace ispace {
-namespace {
+namespace edit_test {
 
 using Kind = Edit::Kind;
 
@@ -284,5 +284,5 @@ TEST(Edit, RefusesTextThatIsNoEdit) {
         EXPECT_THROW((void)parseEdit(kind, text), FormatError) << text;
 }
 
-}  // namespace
+}  // namespace edit_test
 }  // namespace ispace

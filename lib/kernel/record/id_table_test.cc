@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace id_table_test {
 
 TEST(IdTable, FindsTheFirstOfEachId) {
     std::vector<std::string> ids;
@@ -31,5 +31,5 @@ TEST(IdTable, OfNothingHasNothing) {
     EXPECT_FALSE(table.find("wall1"));
 }
 
-}  // namespace
+}  // namespace id_table_test
 }  // namespace ispace

@@ -7,7 +7,7 @@
 #include "record/text.h"
 
 namespace ispace {
-namespace {
+namespace missing_keywords_test {
 
 TEST(MissingKeywords, AreNamedWithTheirExtension) {
     addMissingKeyword("sundial", "clocks");
@@ -36,5 +36,5 @@ TEST(MissingKeywords, AreKeysToo) {
     }
 }
 
-}  // namespace
+}  // namespace missing_keywords_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_schemas.h"
 
 namespace ispace {
-namespace {
+namespace placing_test {
 
 Record make(std::string_view line) { return readRecord(line, "a.env", placedSchemas()); }
 
@@ -209,5 +209,5 @@ TEST(TurnAbout, KeepsItsCentre) {
     EXPECT_EQ(turnAbout({0.1, 0.2}, {}, {0.3, 0.7}), (Pose2{{0.3, 0.7}, {}}));
 }
 
-}  // namespace
+}  // namespace placing_test
 }  // namespace ispace

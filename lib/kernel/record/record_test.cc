@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-namespace {
+namespace record_test {
 
 Record make(const char* keyword) { return Record(*testSchemas().find(keyword)); }
 
@@ -248,6 +248,6 @@ TEST(Digest, IsOverTheCanonicalEnvironment) {
     EXPECT_EQ(digest("laser\n"), sha256(""));
 }
 
-}  // namespace
+}  // namespace record_test
 
 }  // namespace ispace

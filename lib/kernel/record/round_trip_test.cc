@@ -8,7 +8,7 @@
 #include "support/test_schemas.h"
 
 namespace ispace {
-namespace {
+namespace round_trip_test {
 
 TEST(RoundTrip, DocumentsReadBackEqual) {
     RandomDocuments random(testSchemas(), 7);
@@ -52,5 +52,5 @@ TEST(RoundTrip, YamlAndTextGiveEachOther) {
     }
 }
 
-}  // namespace
+}  // namespace round_trip_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 
 namespace ispace {
 
-namespace {
+namespace schema_test {
 
 KeySpec sizeKey() {
     KeySpec key = testKey("size", KeyType::Tuple, Unit::Length);
@@ -53,6 +53,6 @@ TEST(Manual, PutsRecordsInTheirPlace) {
     EXPECT_THROW(expandManual("@RECORDS walls@\n", testSchemas()), FormatError);
 }
 
-}  // namespace
+}  // namespace schema_test
 
 }  // namespace ispace

@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-namespace {
+namespace text_test {
 
 TEST(ByteOrderMark, IsTakenOffTheStartOnce) {
     EXPECT_EQ(withoutBom("\xef\xbb\xbf#env 1"), "#env 1");
@@ -365,6 +365,6 @@ TEST(WriteText, KeepsHistoryToItsLines) {
     EXPECT_EQ(writeRecordText(document), "#3dm 1\n# arrange 'a?b'\n");
 }
 
-}  // namespace
+}  // namespace text_test
 
 }  // namespace ispace

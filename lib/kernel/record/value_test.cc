@@ -28,7 +28,7 @@ bool is_memory_out = false;
 }
 
 namespace ispace {
-namespace {
+namespace value_test {
 
 const KeySpec& keyOf(const char* keyword, const char* name) {
     return *testSchemas().find(keyword)->find(name);
@@ -311,5 +311,5 @@ TEST(ParseValue, TakesSizesAsTheyAreSpoken) {
     EXPECT_EQ(findingsOf([&] { (void)parseValue(path, "8x6;1,2"); }).size(), 1U);
 }
 
-}  // namespace
+}  // namespace value_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_schemas.h"
 
 namespace ispace {
-namespace {
+namespace yaml_parts_test {
 
 using Texts = std::vector<std::string>;
 
@@ -330,5 +330,5 @@ TEST(YamlExpansion, ManyCopiesAreMade) {
               50000U);
 }
 
-}  // namespace
+}  // namespace yaml_parts_test
 }  // namespace ispace

@@ -15,7 +15,7 @@ namespace ispace {
 
 using testing::scene;
 
-namespace {
+namespace bodies_test {
 
 /// Six times the volume that the triangles enclose, positive if they are seen from outside.
 double sixVolumes(const Mesh& mesh) {
@@ -209,5 +209,5 @@ TEST(PersonFigure, KeepsPartsAndAddsOthers) {
     EXPECT_EQ(figure.carried({0.1, 0.2, 1.3}), (Point3{0.1, 0.2, 0}));
 }
 
-}  // namespace
+}  // namespace bodies_test
 }  // namespace ispace

@@ -11,7 +11,7 @@ namespace ispace {
 using testing::check;
 using testing::scene;
 
-namespace {
+namespace check_rooms_test {
 
 TEST(CheckScene, LooseEndsThatMissAnotherWall) {
     const std::string miss = "wall id=v from=2,0 to=2,5.88\n";
@@ -81,5 +81,5 @@ TEST(CheckScene, SeveralRooms) {
               0U);
 }
 
-}  // namespace
+}  // namespace check_rooms_test
 }  // namespace ispace

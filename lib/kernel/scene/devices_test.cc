@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-namespace {
+namespace devices_test {
 
 /// A folder of device files.
 class DeviceFolder : public ::testing::Test {
@@ -237,6 +237,6 @@ TEST(SensorModelOf, UnknownModelNamesTheNearestAndSaysWhereTheOthersAre) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace devices_test
 
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "geom/predicates.h"
 
 namespace ispace {
-namespace {
+namespace overlap_test {
 
 const Polygon kSquare{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
 
@@ -144,5 +144,5 @@ TEST(Overlap, OfRoundThingsAsLargeAsTowns) {
     EXPECT_NEAR(overlapOf(a, {{4e5, -1e6}, {4e5, 1e6}})->depth, 1e5, 1);
 }
 
-}  // namespace
+}  // namespace overlap_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace preferences_test {
 
 Preferences preferred(const std::string& text) {
     const Scene scene =
@@ -43,5 +43,5 @@ TEST(Preferences, AreRefusedWithHints) {
         EXPECT_NE(refusal(bad), "") << bad;
 }
 
-}  // namespace
+}  // namespace preferences_test
 }  // namespace ispace

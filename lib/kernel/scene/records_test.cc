@@ -8,7 +8,7 @@
 #include "support/test_random_records.h"
 
 namespace ispace {
-namespace {
+namespace records_test {
 
 TEST(Records, SurviveYamlAndEnvAndYamlAgain) {
     RandomDocuments random(sceneSchemas(), 20261120);
@@ -28,5 +28,5 @@ TEST(Records, SurviveYamlAndEnvAndYamlAgain) {
     }
 }
 
-}  // namespace
+}  // namespace records_test
 }  // namespace ispace

@@ -10,7 +10,7 @@ namespace ispace {
 using testing::devices;
 using testing::findings;
 
-namespace {
+namespace robot_test {
 
 Record record(const std::string& line) { return readRecord(line, "line", sceneSchemas()); }
 
@@ -32,7 +32,8 @@ TEST(RobotOf, DevicesHaveTheSonarsAndBumpersOfTheReal) {
             EXPECT_EQ(here.position.x, there.position.x) << model << ' ' << i;
             EXPECT_EQ(here.position.y, -there.position.y) << model << ' ' << i;
             EXPECT_NEAR(wrapped(here.heading + there.heading).degrees(), 0, 1e-9) << model;
-            EXPECT_LT(distance(here.position, {}), pioneer.radius + 0.01) << model << ' ' << i;
+            EXPECT_LT(distance(here.position, Point2()), pioneer.radius + 0.01)
+                << model << ' ' << i;
         }
     }
     for (const char* model : {"create3", "turtlebot4"}) {
@@ -158,6 +159,6 @@ TEST(FloorPoseOf, IsTheOriginIfNotGiven) {
               (Pose2{{1, 2}, Angle::degrees(30)}));
 }
 
-}  // namespace
+}  // namespace robot_test
 
 }  // namespace ispace

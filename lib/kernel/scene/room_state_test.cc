@@ -9,7 +9,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace room_state_test {
 
 const char* const kRoom =
     "ispace size=6,6\ndoor id=d1 at=0,3\nlamp id=l1 at=1,1 on=yes level=40%\nswitch id=b1\nspeaker "
@@ -74,5 +74,5 @@ TEST(RoomState, SeveralStatesAreOneChange) {
     EXPECT_EQ(edits[1].value, "0.5");
 }
 
-}  // namespace
+}  // namespace room_state_test
 }  // namespace ispace

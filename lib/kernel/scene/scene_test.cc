@@ -15,7 +15,7 @@ using testing::layoutDocument;
 using testing::roomDocument;
 using testing::scene;
 
-namespace {
+namespace scene_test {
 
 const std::string kRoom =
     "ispace id=room at=4,3 size=8,6\n"
@@ -391,6 +391,6 @@ TEST(LeftOut, SaysNothingOfNothing) {
     EXPECT_TRUE(leftOut(scene, kUnread, "measured").empty());
 }
 
-}  // namespace
+}  // namespace scene_test
 
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace sensor_spec_test {
 
 SensorSpec read(const std::string& text) {
     constexpr std::string_view kKinds[] = {"laser"};
@@ -83,5 +83,5 @@ TEST(SensorSpec, ErrorsNameWhatIsWrong) {
               "`sr-3000` is a device of kind ranger, which this option does not take");
 }
 
-}  // namespace
+}  // namespace sensor_spec_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-namespace {
+namespace views_test {
 
 std::optional<Mesh> view(const std::string& line) {
     const Scene scene = testing::scene("ispace size=8,6\n" + line + "\n");
@@ -98,6 +98,6 @@ TEST(Views, TrianglesAreWithinTheirVertices) {
     }
 }
 
-}  // namespace
+}  // namespace views_test
 
 }  // namespace ispace

@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-namespace {
+namespace clear_glass_test {
 
 /// A room of 8 m by 6 m with a wall at x = 1 that ends before those of the room, and in it a window
 /// 3 m wide from 0.5 m to 2 m.
@@ -89,6 +89,6 @@ TEST(ClearGlass, StopsUltrasound) {
     EXPECT_EQ(heard("none"), 2U);
 }
 
-}  // namespace
+}  // namespace clear_glass_test
 
 }  // namespace ispace

@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-namespace {
+namespace depth_test {
 
 /// A room of 8 m x 6 m x 2.5 m about (4, 3), closed above.
 const std::string kRoom = "ispace at=4,3 size=8,6,2.5 ceiling=yes\n";
@@ -232,6 +232,6 @@ TEST(Depth, StrayRaysOfADepthMeterStillMeasureDepth) {
         EXPECT_NEAR(depth, 5, 1e-4);
 }
 
-}  // namespace
+}  // namespace depth_test
 
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace detection_test {
 
 using testing::scene;
 
@@ -140,5 +140,5 @@ TEST(DetectionMonitor, CountsManyTargetsAsItCountsEachWithEachSensor) {
     EXPECT_GT(*std::max_element(sums.begin(), sums.end()), 3U);
 }
 
-}  // namespace
+}  // namespace detection_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace ispace {
-namespace {
+namespace dilution_test {
 
 Laser laserWith(double sigma, double angle_degrees) {
     Laser laser;
@@ -93,5 +93,5 @@ TEST(Dilution, WithoutMeasurementsIsUnbounded) {
     EXPECT_TRUE(std::isinf(FloorInformation().error()));
 }
 
-}  // namespace
+}  // namespace dilution_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "sense/locate.h"
 
 namespace ispace {
-namespace {
+namespace locate_test {
 
 using Points = std::vector<Point3>;
 
@@ -404,5 +404,5 @@ TEST(Locate, AxesAlongTheReceiversPlaneTellNoSide) {
     EXPECT_NEAR(locate(receivers, distances, {0, 0, 1})->position.z, 1.6, 1e-9);
 }
 
-}  // namespace
+}  // namespace locate_test
 }  // namespace ispace

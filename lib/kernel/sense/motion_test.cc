@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-namespace {
+namespace motion_test {
 
 const std::string kRoom = "ispace at=4,3 size=8,6,2.5\n";
 
@@ -138,6 +138,6 @@ TEST(Sweep, OfTiltGoesThroughTheLevel) {
     EXPECT_NEAR(scans[4].ranges[90], 4 / cos(Angle::degrees(10)), 1e-5);
 }
 
-}  // namespace
+}  // namespace motion_test
 
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace noise_test {
 
 using Floats = std::vector<float>;
 
@@ -375,5 +375,5 @@ TEST(BearingErrors, AreNormalAndTheirOwn) {
     EXPECT_EQ(errors, Floats(kMany));
 }
 
-}  // namespace
+}  // namespace noise_test
 }  // namespace ispace

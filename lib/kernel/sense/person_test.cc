@@ -13,7 +13,7 @@
 #include "trace/render/render.h"
 
 namespace ispace {
-namespace {
+namespace person_test {
 
 constexpr double kHeight = 1.7;
 
@@ -180,5 +180,5 @@ TEST(Person, LasersRangersAndCamerasAgreeOnWalkers) {
     EXPECT_GT(level, 1000U);
 }
 
-}  // namespace
+}  // namespace person_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_readings.h"
 
 namespace ispace {
-namespace {
+namespace photo_test {
 
 const std::string kRoom = "ispace id=room size=6,4 height=2.5\ncube id=crate at=2,0 size=0.8\n";
 const std::string kEye = "camera id=c1 at=-2,0,1.2 tilt=-10 fov=70 pixels=64,48";
@@ -171,5 +171,5 @@ TEST(CameraFormats, RefuseWhatTheyCannotHold) {
         (std::vector<std::string>{".jpg", "-labels.png", "-labels.csv", "-depth.png", ".yaml"}));
 }
 
-}  // namespace
+}  // namespace photo_test
 }  // namespace ispace

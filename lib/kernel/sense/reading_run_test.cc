@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-namespace {
+namespace reading_run_test {
 
 const std::string kRoom =
     "ispace at=4,3 size=8,6,2.5\ndesk at=2,2 heading=20\ncylinder at=5,4 size=1,1,1\n";
@@ -377,6 +377,6 @@ TEST(StillSource, FrameByFrameEachAtItsRate) {
     EXPECT_EQ(all[5].time, 10.0 / 20) << "a sweep has ten scans";
 }
 
-}  // namespace
+}  // namespace reading_run_test
 
 }  // namespace ispace

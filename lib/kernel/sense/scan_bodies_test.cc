@@ -10,7 +10,7 @@
 #include "support/test_readings.h"
 
 namespace ispace {
-namespace {
+namespace scan_bodies_test {
 
 const std::string kRoom = "ispace at=4,3 size=8,6,2.5\n";
 
@@ -151,5 +151,5 @@ TEST(Beams, DegreesOfASensorThatStandsAddUpExactly) {
     EXPECT_EQ(beams.at(sensor.pose)[150], (Vec3{0, 1, 0}));  // bearing 60
 }
 
-}  // namespace
+}  // namespace scan_bodies_test
 }  // namespace ispace

@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-namespace {
+namespace scan_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const std::string kRoom = "ispace at=4,3 size=8,6,2.5\n";
@@ -347,6 +347,6 @@ TEST(SliceArea, ReturnsCountByTheirSquare) {
     EXPECT_EQ(sliceArea(laser, {}), 0);
 }
 
-}  // namespace
+}  // namespace scan_test
 
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace selection_test {
 
 TEST(StartVelocities, FollowPathsAndWanderersAtTheirSpeeds) {
     const Scene scene = testing::scene(
@@ -24,5 +24,5 @@ TEST(StartVelocities, FollowPathsAndWanderersAtTheirSpeeds) {
     EXPECT_EQ(all.of(MovingBodies::kNoOwner).linear, Vec2());
 }
 
-}  // namespace
+}  // namespace selection_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-namespace {
+namespace trajectory_test {
 
 constexpr Angle kLeft = Angle::degrees(90);
 
@@ -93,6 +93,6 @@ TEST(Trajectory, BetweenIsStraightAndEven) {
     expectNear(between(c, d, 1).beam({}), d.beam({}), 1e-12);
 }
 
-}  // namespace
+}  // namespace trajectory_test
 
 }  // namespace ispace

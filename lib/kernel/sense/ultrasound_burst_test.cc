@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace ultrasound_burst_test {
 
 constexpr Angle kStraightDown = Angle::degrees(-90);
 
@@ -380,5 +380,5 @@ TEST(SimpleModel, HasIndependentNoiseOfTheThesis) {
     EXPECT_NEAR(xy / kFrames, 0, 0.01 * slack);
 }
 
-}  // namespace
+}  // namespace ultrasound_burst_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-namespace {
+namespace body_rays_test {
 
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kNoOwner = MovingBodies::kNoOwner;
@@ -282,6 +282,6 @@ TEST(MovingBodies, VisitsOnlyBodiesAlongASegment) {
     EXPECT_TRUE(std::is_sorted(near.begin(), near.end()));
 }
 
-}  // namespace
+}  // namespace body_rays_test
 
 }  // namespace ispace

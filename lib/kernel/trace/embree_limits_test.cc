@@ -17,7 +17,7 @@ namespace ispace {
 
 using namespace testing;
 
-namespace {
+namespace embree_limits_test {
 
 /// A level square at 1 m over a floor, tiled by needles: from a corner to the side opposite, or
 /// side by side.
@@ -328,6 +328,6 @@ TEST(EmbreeLimits, ALimitThatIsNoNumberIsNeverReached) {
     for (const float range : beams.ranges) EXPECT_LT(range, 2);
 }
 
-}  // namespace
+}  // namespace embree_limits_test
 
 }  // namespace ispace

@@ -8,7 +8,7 @@
 
 namespace ispace {
 
-namespace {
+namespace embree_query_test {
 
 constexpr float kMaxReach = 8;
 
@@ -122,6 +122,6 @@ TEST(MeetOnePlane, LeavesDoubtsToOthers) {
         is_sure_with([](Case& t) { t.packet.x[4] = std::numeric_limits<double>::quiet_NaN(); }));
 }
 
-}  // namespace
+}  // namespace embree_query_test
 
 }  // namespace ispace

@@ -16,7 +16,7 @@ namespace ispace {
 
 using namespace testing;
 
-namespace {
+namespace embree_scene_test {
 
 /// A globe with bumps; its triangles share positions, but no vertices.
 void addGlobe(TriangleSoup& soup, Point3 middle, int rings, int sectors, std::mt19937_64& random) {
@@ -349,6 +349,6 @@ TEST(EmbreeScene, EmptyOrWithoutAreaStopsNothing) {
     }
 }
 
-}  // namespace
+}  // namespace embree_scene_test
 
 }  // namespace ispace

@@ -16,7 +16,7 @@ namespace ispace {
 
 using namespace testing;
 
-namespace {
+namespace flat_kernels_test {
 
 /// All ways in which a ray may be cast; they agree.
 float rangeOf(const FlatWorld& world, Point2 origin, Vec2 way) {
@@ -220,6 +220,6 @@ TEST(FlatRound, NearestOfMany) {
     EXPECT_TRUE(std::isinf(cast(world, {9, 0}, beams).ranges[1]));
 }
 
-}  // namespace
+}  // namespace flat_kernels_test
 
 }  // namespace ispace

@@ -19,7 +19,7 @@ namespace ispace {
 
 using namespace testing;
 
-namespace {
+namespace flat_packet_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -385,6 +385,6 @@ TEST(FlatPacket, WhatIsNoRayHarmsNoNeighbour) {
         }
 }
 
-}  // namespace
+}  // namespace flat_packet_test
 
 }  // namespace ispace

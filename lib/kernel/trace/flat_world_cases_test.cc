@@ -18,7 +18,7 @@ namespace ispace {
 
 using namespace testing;
 
-namespace {
+namespace flat_world_cases_test {
 
 /// Along a heading, as one ray and as one of a scan.
 double range(const FlatWorld& world, Point2 origin, Angle heading, double max_range = kInfinity) {
@@ -233,6 +233,6 @@ TEST(FlatWorld, SeveralThreadsShareAWorld) {
     EXPECT_EQ(cast(FlatWorld(lines), {6.1, 6.2}, beams, 20), seen.front());
 }
 
-}  // namespace
+}  // namespace flat_world_cases_test
 
 }  // namespace ispace

@@ -20,7 +20,7 @@ namespace ispace {
 
 using namespace testing;
 
-namespace {
+namespace flat_world_test {
 
 /// Tests each line against each ray in long doubles, with exact signs for the sides.
 class BruteForce {
@@ -325,6 +325,6 @@ TEST(FlatWorld, AnUpdatedTreeAnswersLikeANewOne) {
         }
 }
 
-}  // namespace
+}  // namespace flat_world_test
 
 }  // namespace ispace

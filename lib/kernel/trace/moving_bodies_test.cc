@@ -10,7 +10,7 @@
 #include "trace/body_scan.h"
 
 namespace ispace {
-namespace {
+namespace moving_bodies_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr float kNoReturn = std::numeric_limits<float>::infinity();
@@ -391,5 +391,5 @@ TEST(MovingBodies, NewPlacesAreTaken) {
     EXPECT_EQ(one.read(bodies)[0], kNoReturn);
 }
 
-}  // namespace
+}  // namespace moving_bodies_test
 }  // namespace ispace

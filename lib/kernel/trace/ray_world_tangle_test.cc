@@ -15,7 +15,7 @@
 
 namespace ispace {
 
-namespace {
+namespace ray_world_tangle_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -168,6 +168,6 @@ TEST(RayWorld, SeveralThreadsShareAWorld) {
     EXPECT_EQ(found.back(), found.front());
 }
 
-}  // namespace
+}  // namespace ray_world_tangle_test
 
 }  // namespace ispace

@@ -17,7 +17,7 @@ namespace ispace {
 
 using namespace testing;
 
-namespace {
+namespace ray_world_test {
 
 /// Lines where `pose` puts them.
 Slice moved(std::vector<Segment2> sheets, const Pose2& pose) {
@@ -290,6 +290,6 @@ TEST(RayWorld, EmptyWorldStopsNothing) {
     }
 }
 
-}  // namespace
+}  // namespace ray_world_test
 
 }  // namespace ispace

@@ -7,7 +7,7 @@
 
 namespace ispace {
 
-namespace {
+namespace round_view_test {
 
 constexpr double kTouching = 1e-4;
 
@@ -95,6 +95,6 @@ TEST_F(RoundViews, NoneIsHadFromNearTheSurfaceOrWithin) {
     EXPECT_TRUE(is_had({0.2, 0.2, -0.1}));
 }
 
-}  // namespace
+}  // namespace round_view_test
 
 }  // namespace ispace

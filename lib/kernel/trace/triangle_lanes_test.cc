@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace triangle_lanes_test {
 
 using Corners = std::array<Point3, 3>;
 
@@ -96,5 +96,5 @@ TEST(TriangleLanes, EnlargedOnesAreThoseOfOneTriangleAfterTheOther) {
     }
 }
 
-}  // namespace
+}  // namespace triangle_lanes_test
 }  // namespace ispace

@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-namespace {
+namespace worlds_test {
 
 Scene furnishedRoom() {
     return testing::scene(
@@ -311,6 +311,6 @@ TEST(Mesh, FloorIsMetOnlyIndoorsAndCoveringsAreNotFelt) {
     EXPECT_TRUE(std::isinf(ahead(worlds, outside)));
 }
 
-}  // namespace
+}  // namespace worlds_test
 
 }  // namespace ispace

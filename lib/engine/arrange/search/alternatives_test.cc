@@ -9,7 +9,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace alternatives_test {
 
 /// Finds the largest value of a feasible solution that differs from all of these.
 std::uint64_t bestThatDiffers(const Problem& problem, const std::vector<Solution>& others,
@@ -78,5 +78,5 @@ TEST(Alternatives, EndWhereAllSolutionsAreNear) {
     EXPECT_TRUE(alternativesTo(random.problem, {}, always, 3, {}, progress).empty());
 }
 
-}  // namespace
+}  // namespace alternatives_test
 }  // namespace ispace

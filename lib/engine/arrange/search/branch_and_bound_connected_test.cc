@@ -8,7 +8,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace branch_and_bound_connected_test {
 
 SearchResult searchTree(const Problem& problem) {
     SilentProgress progress;
@@ -105,5 +105,5 @@ TEST(ConnectedTree, ManySensorsOfTwoKindsEqualBruteForce) {
     }
 }
 
-}  // namespace
+}  // namespace branch_and_bound_connected_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-namespace {
+namespace branch_and_bound_test {
 
 using List = std::vector<std::uint32_t>;
 
@@ -311,6 +311,6 @@ TEST(ReducedProblem, CellsThatTheSameSeeAreOne) {
               (std::vector<std::uint32_t>{9 * cells.scale, 10 * cells.scale, 8 * cells.scale}));
 }
 
-}  // namespace
+}  // namespace branch_and_bound_test
 
 }  // namespace ispace

@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-namespace {
+namespace branch_node_test {
 
 /// A node with all candidates of a problem of one kind.
 BranchNode nodeOf(const Problem& problem, const Bound& bound) {
@@ -102,6 +102,6 @@ TEST(SplitNode, ChildrenShareOutTheGroup) {
     }
 }
 
-}  // namespace
+}  // namespace branch_node_test
 
 }  // namespace ispace

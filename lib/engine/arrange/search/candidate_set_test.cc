@@ -7,7 +7,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace candidate_set_test {
 
 using Random = std::mt19937_64;
 
@@ -194,5 +194,5 @@ TEST(CandidateSet, ManySitesInManyBlocks) {
     EXPECT_EQ(again, values);
 }
 
-}  // namespace
+}  // namespace candidate_set_test
 }  // namespace ispace

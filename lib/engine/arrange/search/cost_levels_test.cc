@@ -11,7 +11,7 @@
 #include "base/number.h"
 
 namespace ispace {
-namespace {
+namespace cost_levels_test {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -140,5 +140,5 @@ TEST_F(CostLevelsTest, TooManySumsAreEvenStepsOfFewDigits) {
     EXPECT_EQ(levels.below(most), 4000U);
 }
 
-}  // namespace
+}  // namespace cost_levels_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace greedy_search_test {
 
 bool holds(const std::vector<Choice>& chosen, const Choice& choice) {
     return std::find(chosen.begin(), chosen.end(), choice) != chosen.end();
@@ -377,5 +377,5 @@ TEST(GreedySearch, HeaviestWeightsDoNotOverflow) {
     EXPECT_EQ(solution.value, problem.weights[1]);
 }
 
-}  // namespace
+}  // namespace greedy_search_test
 }  // namespace ispace

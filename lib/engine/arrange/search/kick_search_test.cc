@@ -9,7 +9,7 @@
 
 namespace ispace {
 
-namespace {
+namespace kick_search_test {
 
 Solution kicked(const Problem& problem, const Solution& start, const KickOptions& options = {}) {
     SilentProgress progress;
@@ -113,6 +113,6 @@ TEST(KickSearch, TrivialProblems) {
     EXPECT_EQ(kicked(problem, doubled).value, 0U);
 }
 
-}  // namespace
+}  // namespace kick_search_test
 
 }  // namespace ispace

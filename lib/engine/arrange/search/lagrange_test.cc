@@ -12,7 +12,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace lagrange_test {
 
 Bound boundFor(const Problem& problem, const Solution& best, Progress& progress) {
     return lagrangianBound(problem, best.chosen, {.cut = best.value}, progress);
@@ -204,5 +204,5 @@ TEST(CountChoice, WaysAreFeasibleAndHoldAllThatIs) {
     }
 }
 
-}  // namespace
+}  // namespace lagrange_test
 }  // namespace ispace

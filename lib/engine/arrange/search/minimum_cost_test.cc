@@ -9,7 +9,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace minimum_cost_test {
 
 /// Returns the minimum cost of a set of that value; infinite if there is no such set.
 double leastCost(const Problem& problem, std::uint64_t wanted) {
@@ -241,5 +241,5 @@ TEST(MinimumCost, WhatStandsMayBeEnough) {
     EXPECT_EQ(cover.cost_bound, 0);
 }
 
-}  // namespace
+}  // namespace minimum_cost_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace mps_file_test {
 
 /// Stores the numbers of a model file; missing ones are 0.
 struct Model {
@@ -139,5 +139,5 @@ TEST(WriteMps, AllChoicesOfARandomProblemAreWorthTheSame) {
     }
 }
 
-}  // namespace
+}  // namespace mps_file_test
 }  // namespace ispace

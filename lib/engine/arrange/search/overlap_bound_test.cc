@@ -10,7 +10,7 @@
 
 namespace ispace {
 
-namespace {
+namespace overlap_bound_test {
 
 /// Six sensors in a hall that they cover in good part.
 RandomProblemOptions crowdedOptions(std::uint64_t round) {
@@ -124,6 +124,6 @@ TEST(OverlapBound, LeavesOtherProblemsAlone) {
         EXPECT_FALSE(isBoundByOverlaps(randomProblem(1, options).problem));
 }
 
-}  // namespace
+}  // namespace overlap_bound_test
 
 }  // namespace ispace

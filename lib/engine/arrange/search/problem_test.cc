@@ -13,7 +13,7 @@
 
 namespace ispace {
 
-namespace {
+namespace problem_test {
 
 using Cells = std::vector<std::size_t>;
 
@@ -314,6 +314,6 @@ TEST(WholeUnits, LargeWeightsAreScaledDown) {
               std::uint64_t{1} << 32U);
 }
 
-}  // namespace
+}  // namespace problem_test
 
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_results.h"
 
 namespace ispace {
-namespace {
+namespace search_share_test {
 
 /// Large enough for a tree of some hundred nodes.
 RandomProblem hardProblem(std::uint64_t seed) {
@@ -329,5 +329,5 @@ TEST(PackedSearch, SurvivorsAreOneListForEachKindOrNone) {
     }
 }
 
-}  // namespace
+}  // namespace search_share_test
 }  // namespace ispace

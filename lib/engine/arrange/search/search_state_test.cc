@@ -10,7 +10,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace search_state_test {
 
 RandomProblemOptions mixed() {
     RandomProblemOptions options;
@@ -153,5 +153,5 @@ TEST(Connection, IsJoinedByThatWhichMakesItConnected) {
     }
 }
 
-}  // namespace
+}  // namespace search_state_test
 }  // namespace ispace

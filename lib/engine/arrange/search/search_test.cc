@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-namespace {
+namespace search_test {
 
 /// Says stop after so many steps, and stores the reports.
 class DetectionMonitor final : public Progress {
@@ -210,6 +210,6 @@ TEST(Search, NothingToPlace) {
     }
 }
 
-}  // namespace
+}  // namespace search_test
 
 }  // namespace ispace

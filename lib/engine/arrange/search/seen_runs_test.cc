@@ -6,7 +6,7 @@
 #include <random>
 
 namespace ispace {
-namespace {
+namespace seen_runs_test {
 
 TEST(CellRuns, CommonOnesAndTheirWeightAreThoseOfCells) {
     std::mt19937_64 random(11);
@@ -49,5 +49,5 @@ TEST(CellRuns, CommonOnesAndTheirWeightAreThoseOfCells) {
     }
 }
 
-}  // namespace
+}  // namespace seen_runs_test
 }  // namespace ispace

@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-namespace {
+namespace set_cover_test {
 
 SetCover randomCover(std::mt19937_64& random, std::size_t rows, std::size_t columns, bool costs) {
     SetCover cover{rows, {}, {}};
@@ -179,6 +179,6 @@ TEST(SetCover, ProvesInstancesOfTheOrLibrary) {
     }
 }
 
-}  // namespace
+}  // namespace set_cover_test
 
 }  // namespace ispace

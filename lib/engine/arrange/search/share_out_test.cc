@@ -12,7 +12,7 @@
 #include "support/test_splits.h"
 
 namespace ispace {
-namespace {
+namespace share_out_test {
 
 double at(const std::vector<double>& curve, int n) {
     return curve[std::min(static_cast<std::size_t>(n), curve.size() - 1)];
@@ -61,5 +61,5 @@ TEST(ShareOut, PrefersEarlierParts) {
     EXPECT_TRUE(shareOut({}, 3).counts.empty());
 }
 
-}  // namespace
+}  // namespace share_out_test
 }  // namespace ispace

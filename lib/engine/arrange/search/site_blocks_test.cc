@@ -9,7 +9,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace site_blocks_test {
 
 std::uint32_t mostAt(const CandidateSet& candidates, std::size_t site,
                      const std::vector<std::uint32_t>& gains) {
@@ -86,5 +86,5 @@ TEST(SiteBlocks, AreExactForBlocksThatAreSeenWhole) {
     EXPECT_EQ(bounds, (std::vector<std::uint32_t>{0, 36, 84, 132}));
 }
 
-}  // namespace
+}  // namespace site_blocks_test
 }  // namespace ispace

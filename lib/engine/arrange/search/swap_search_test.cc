@@ -11,7 +11,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace swap_search_test {
 
 Solution improved(const Problem& problem, int starts = 20, std::uint64_t seed = 0) {
     SilentProgress progress;
@@ -315,5 +315,5 @@ TEST(ResponseCache, KnowsChoicesInAnyOrder) {
     EXPECT_EQ(found, 100'000U);
 }
 
-}  // namespace
+}  // namespace swap_search_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_problems.h"
 
 namespace ispace {
-namespace {
+namespace worst_case_test {
 
 /// Calls visit(set) for every set of at most `most` candidates.
 void forEachLayout(const Problem& problem,
@@ -237,5 +237,5 @@ TEST(WorstCase, AllFailIfThereAreNotMore) {
     EXPECT_EQ(one.failed, std::vector<std::size_t>{0});
 }
 
-}  // namespace
+}  // namespace worst_case_test
 }  // namespace ispace

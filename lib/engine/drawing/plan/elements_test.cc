@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace elements_test {
 
 Body bodyFrom(const std::string& line) { return bodyOf(readRecord(line, "test", sceneSchemas())); }
 
@@ -105,5 +105,5 @@ TEST(Footprint, RegionsFindTheirHoles) {
     EXPECT_DOUBLE_EQ(regions[1].area(), 100 - 16);
 }
 
-}  // namespace
+}  // namespace elements_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "drawing/plan/plan.h"
 
 namespace ispace {
-namespace {
+namespace placed_test {
 
 constexpr double kEm = 10, kTextWidth = 50;
 
@@ -105,5 +105,5 @@ TEST(LabelPlacer, ALineJoinsAMarkAndItsDistantLabel) {
     EXPECT_EQ(far.list().shapes.size(), near.list().shapes.size() + 1);
 }
 
-}  // namespace
+}  // namespace placed_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace plan_json_test {
 
 std::string planOf(const std::string& room, const std::string& layout = "") {
     JsonWriter json;
@@ -50,5 +50,5 @@ TEST(PlanJson, DoesNotDependOnWhereTheRoomLies) {
     EXPECT_TRUE(far.starts_with("{\"box\":[996,-503,1004,-497],")) << far;
 }
 
-}  // namespace
+}  // namespace plan_json_test
 }  // namespace ispace

@@ -13,7 +13,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace plan_test {
 
 using ispace::testing::scene;
 
@@ -310,5 +310,5 @@ TEST(PlanSvg, ManyWallsStaySmall) {
     EXPECT_LT(svg(lines).size(), 5000U * 200);
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace ispace

@@ -22,7 +22,7 @@
 #include "support/test_glb.h"
 
 namespace ispace {
-namespace {
+namespace glb_test {
 
 using Json = nlohmann::json;
 using testing::errorOf;
@@ -386,5 +386,5 @@ TEST(Glb, FlippedBytesNeverDoWorseThanAnError) {
     testing::surviveFlips(glb, std::min(front, glb.size()), 77);
 }
 
-}  // namespace
+}  // namespace glb_test
 }  // namespace ispace

@@ -5,7 +5,7 @@
 #include "support/test_import.h"
 
 namespace ispace {
-namespace {
+namespace bare_map_test {
 
 ImportOptions withResolution(double metres) {
     ImportOptions options;
@@ -67,5 +67,5 @@ TEST(BarePicture, TransparentIsUnknown) {
               "#env 1\nfence path=1,0;3,0;3,1;1,1 closed=yes\ninside at=1.5,0.5\n");
 }
 
-}  // namespace
+}  // namespace bare_map_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include "support/test_cell_map.h"
 
 namespace ispace {
-namespace {
+namespace cell_map_test {
 
 using testing::Drawing;
 using testing::errorOf;
@@ -244,5 +244,5 @@ TEST(CellMap, RoomsAroundEachOtherAreBounded) {
     EXPECT_NE(error.find("are more than 1000000000"), std::string::npos) << error;
 }
 
-}  // namespace
+}  // namespace cell_map_test
 }  // namespace ispace

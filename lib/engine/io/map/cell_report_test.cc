@@ -8,7 +8,7 @@
 #include "support/test_cell_map.h"
 
 namespace ispace {
-namespace {
+namespace cell_report_test {
 
 using testing::Drawing;
 using testing::errorOf;
@@ -206,5 +206,5 @@ TEST(CellReport, NoFreeCellIsAnError) {
     EXPECT_EQ(import(drawing.map(), gaps).fences.size(), 1U);
 }
 
-}  // namespace
+}  // namespace cell_report_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "support/test_cells.h"
 
 namespace ispace {
-namespace {
+namespace cleaning_test {
 
 using testing::largestPiece;
 using testing::rowsOf;
@@ -211,5 +211,5 @@ TEST(CleanRoom, LanesWithManyRooms) {
     EXPECT_TRUE(room.floor.contains(kLength - 4, 2));
 }
 
-}  // namespace
+}  // namespace cleaning_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_cells.h"
 
 namespace ispace {
-namespace {
+namespace rooms_test {
 
 using testing::cellsOf;
 using testing::rowsOf;
@@ -186,5 +186,5 @@ TEST(ReachedByDisc, StaysOnItsSideOfADoorThatIsTooNarrow) {
     EXPECT_EQ(reachedByDisc(rooms, 1, {{4, 2}}).count(), 0U);
 }
 
-}  // namespace
+}  // namespace rooms_test
 }  // namespace ispace

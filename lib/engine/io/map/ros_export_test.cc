@@ -21,7 +21,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace ros_export_test {
 
 using ispace::testing::scene;
 
@@ -337,5 +337,5 @@ TEST(RosExport, NoFloorLeaksThroughAThinWall) {
     }
 }
 
-}  // namespace
+}  // namespace ros_export_test
 }  // namespace ispace

@@ -17,10 +17,11 @@
 #include "record/text.h"
 #include "scene/placement_schemas.h"
 #include "scene/scene.h"
+#include "support/test_import.h"
 #include "support/test_png.h"
 
 namespace ispace {
-namespace {
+namespace ros_map_test {
 
 /// A folder of the running test's own.
 class RosMap : public ::testing::Test {
@@ -69,10 +70,6 @@ class RosMap : public ::testing::Test {
 const std::string kHeader = "image: map.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\n";
 
 std::string textOf(const Document& document) { return writeRecordText(document); }
-
-Environment environmentOf(const Document& document) {
-    return makeScene(document, nullptr, DeviceCatalogue()).environment;
-}
 
 TEST_F(RosMap, KnowsAMap) {
     EXPECT_TRUE(isRosMap(kHeader));
@@ -337,5 +334,5 @@ TEST_F(RealMaps, PointChoosesTheCorridorThatAWarningNames) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace ros_map_test
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace {
-namespace {
+namespace drawing_source_test {
 
 TEST(WallNames, OfManyLanguages) {
     for (const char* name :
@@ -26,5 +26,5 @@ TEST(MatchesLayer, InEitherCase) {
     EXPECT_FALSE(matchesLayer({"A×B"}, "A÷B"));
 }
 
-}  // namespace
+}  // namespace drawing_source_test
 }  // namespace ispace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace {
-namespace {
+namespace layer_names_test {
 
 TEST(LayerNames, DoorsAndWindows) {
     for (const char* name :
@@ -107,5 +107,5 @@ TEST(LayerNames, OfBlocks) {
         EXPECT_FALSE(isThingName(name)) << name;
 }
 
-}  // namespace
+}  // namespace layer_names_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace ispace {
-namespace {
+namespace parallel_lines_test {
 
 /// Both sides of a wall of 0.2 m, each drawn again and again.
 std::vector<Segment2> wallDrawn(int times) {
@@ -30,5 +30,5 @@ TEST(ParallelLines, CopiesOfALineCountOnce) {
     }
 }
 
-}  // namespace
+}  // namespace parallel_lines_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 
 namespace ispace {
 
-namespace {
+namespace plan_lines_test {
 
 TEST(NearSegments, FindsWhatAllDistancesFind) {
     std::mt19937_64 random(7);
@@ -299,6 +299,6 @@ TEST(PlanSimplify, LongRunsTakeNoSquare) {
     EXPECT_LT(simplifiedPaths({spiral}, 0.01, ampleWork())[0].points.size(), 60'000U);
 }
 
-}  // namespace
+}  // namespace plan_lines_test
 
 }  // namespace ispace

@@ -14,7 +14,7 @@
 
 namespace ispace {
 
-namespace {
+namespace plan_region_test {
 
 using Lines = std::vector<Segment2>;
 
@@ -288,6 +288,6 @@ TEST(ReachedFloor, RoundAPillar) {
     EXPECT_NEAR(totalArea(reached), 38 - 4 * cornerLoss(0.2), 3e-3);
 }
 
-}  // namespace
+}  // namespace plan_region_test
 
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_work.h"
 
 namespace ispace {
-namespace {
+namespace plan_rooms_test {
 
 using Lines = std::vector<Segment2>;
 
@@ -223,5 +223,5 @@ TEST(PlanRooms, WallsOfALargeBuildingMayMeet) {
     }
 }
 
-}  // namespace
+}  // namespace plan_rooms_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_map.h"
 
 namespace ispace {
-namespace {
+namespace map_floor_test {
 
 using namespace palette;
 
@@ -414,5 +414,5 @@ TEST(DensityMap, IsColouredByClass) {
     EXPECT_GT(plan.shareOf(palette::kFloor, -3.4, 3.2, 3), 0.6);
 }
 
-}  // namespace
+}  // namespace map_floor_test
 }  // namespace ispace

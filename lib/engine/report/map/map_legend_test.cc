@@ -4,7 +4,7 @@
 #include "support/test_map.h"
 
 namespace ispace {
-namespace {
+namespace map_legend_test {
 
 TEST(MapLegend, NamesWhatThePictureShows) {
     const Scene scene = sceneOf(kOffice);
@@ -187,5 +187,5 @@ TEST(MapContents, TellsWallsFromWhatIsOpenAtTheHeight) {
     EXPECT_TRUE(contents(room + "fence path=1,1;2,2 height=0.1\n").openings) << "below";
 }
 
-}  // namespace
+}  // namespace map_legend_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include "support/test_map.h"
 
 namespace ispace {
-namespace {
+namespace map_marks_test {
 
 Image markImage(const SensorMark& mark) {
     Picture picture(200, 200);
@@ -376,5 +376,5 @@ TEST(MapTrace, AllFormatsAndTheSameBytes) {
     }
 }
 
-}  // namespace
+}  // namespace map_marks_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 #include "support/test_map.h"
 
 namespace ispace {
-namespace {
+namespace map_test {
 
 TEST(Map, ShowsFloorWallsAndObjectsWhereTheyAre) {
     // Upper right quarter seen; 100 px/m or a little less.
@@ -237,5 +237,5 @@ TEST(Map, SensorsFarOutsideDoNoHarm) {
     EXPECT_EQ(pixels.width, 1200);
 }
 
-}  // namespace
+}  // namespace map_test
 }  // namespace ispace

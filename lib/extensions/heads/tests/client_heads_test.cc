@@ -12,7 +12,7 @@
 
 namespace ispace {
 namespace client {
-namespace {
+namespace client_heads_test {
 
 std::string roomIn(const ispace::testing::TestFolder& folder) {
     std::string file = folder.file("heads.env");
@@ -52,6 +52,6 @@ TEST_F(HeadsThatTurn, WaitKeepsTheEndsOfOthers) {
     EXPECT_FALSE(heads.wait("h", 0.2));
 }
 
-}  // namespace
+}  // namespace client_heads_test
 }  // namespace client
 }  // namespace ispace

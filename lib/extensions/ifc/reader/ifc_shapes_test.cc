@@ -15,7 +15,7 @@
 #include "support/test_work.h"
 
 namespace ispace::ifc {
-namespace {
+namespace ifc_shapes_test {
 
 /// Items of one shape: `item` is #100; #10 is the origin, #11 to #13 are the axes.
 struct ShapeOf {
@@ -282,5 +282,5 @@ TEST(IfcShapes, LoopsOfMapsEnd) {
     EXPECT_TRUE(loop.shapes.unread().contains("shapes in a loop"));
 }
 
-}  // namespace
+}  // namespace ifc_shapes_test
 }  // namespace ispace::ifc

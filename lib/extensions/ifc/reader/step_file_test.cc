@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace ispace::ifc {
-namespace {
+namespace step_file_test {
 
 StepFile fileOf(std::string_view data) { return StepFile(data); }
 
@@ -85,5 +85,5 @@ TEST(StepValue, Strings) {
     EXPECT_EQ(text("'open"), "");
 }
 
-}  // namespace
+}  // namespace step_file_test
 }  // namespace ispace::ifc

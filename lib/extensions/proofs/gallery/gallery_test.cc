@@ -15,7 +15,7 @@
 #include "support/test_problems.h"
 
 namespace ispace::proofs {
-namespace {
+namespace gallery_test {
 
 GalleryCover guarded(const Polygon& outline, const std::vector<Polygon>& holes = {}) {
     const std::vector<Region> floor{{outline, holes}};
@@ -192,5 +192,5 @@ TEST(Gallery, StoppedKeepsAnHonestInterval) {
     }
 }
 
-}  // namespace
+}  // namespace gallery_test
 }  // namespace ispace::proofs

@@ -21,7 +21,7 @@
 #include "support/test_problems.h"
 
 namespace ispace::proofs::poses {
-namespace {
+namespace any_layout_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -224,5 +224,5 @@ TEST(AnyLayout, OneThatSeesAllNeedsNoOther) {
     EXPECT_GT(proofs, 3);
 }
 
-}  // namespace
+}  // namespace any_layout_test
 }  // namespace ispace::proofs::poses

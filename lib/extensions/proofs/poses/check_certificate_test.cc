@@ -18,7 +18,7 @@
 #include "support/test_problems.h"
 
 namespace ispace::proofs {
-namespace {
+namespace check_certificate_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kCells = 1200;
@@ -325,5 +325,5 @@ TEST(BoxViews, AreNoLargerThanThoseOfTheSearch) {
     }
 }
 
-}  // namespace
+}  // namespace check_certificate_test
 }  // namespace ispace::proofs

@@ -14,7 +14,7 @@
 #include "geom/visibility/visibility.h"
 
 namespace ispace::proofs::poses {
-namespace {
+namespace inner_bound_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kCells = 5000;
@@ -159,5 +159,5 @@ TEST(InnerBound, OfTheCheckEndsWhereLinesOfSightEnd) {
     }
 }
 
-}  // namespace
+}  // namespace inner_bound_test
 }  // namespace ispace::proofs::poses

@@ -15,7 +15,7 @@
 #include "support/test_problems.h"
 
 namespace ispace::proofs::poses {
-namespace {
+namespace multiple_bound_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kCells = 2000;
@@ -206,5 +206,5 @@ TEST(MultipleBound, TheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.tuples, four.tuples);
 }
 
-}  // namespace
+}  // namespace multiple_bound_test
 }  // namespace ispace::proofs::poses

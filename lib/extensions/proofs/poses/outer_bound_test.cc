@@ -14,7 +14,7 @@
 #include "geom/visibility/visibility.h"
 
 namespace ispace::proofs::poses {
-namespace {
+namespace outer_bound_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -119,5 +119,5 @@ TEST(OuterBound, AFieldOfAHalfTurnWithItsHeadings) {
         }
 }
 
-}  // namespace
+}  // namespace outer_bound_test
 }  // namespace ispace::proofs::poses

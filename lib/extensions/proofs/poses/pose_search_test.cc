@@ -17,7 +17,7 @@
 #include "support/test_problems.h"
 
 namespace ispace::proofs {
-namespace {
+namespace pose_search_test {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -200,5 +200,5 @@ TEST(PoseSearch, AFloorWithoutAreaIsSeenByNone) {
     EXPECT_EQ(boundOverPoses(floor, {2, 2, 0}, {}, silent).bound, 0);
 }
 
-}  // namespace
+}  // namespace pose_search_test
 }  // namespace ispace::proofs

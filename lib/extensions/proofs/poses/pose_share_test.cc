@@ -16,7 +16,7 @@
 #include "support/test_results.h"
 
 namespace ispace::proofs::poses {
-namespace {
+namespace pose_share_test {
 
 constexpr std::size_t kCells = 800;
 const Sector kSector{3, 4, 0};
@@ -345,5 +345,5 @@ TEST(PoseShare, MissingAndForeignPartsAreRefused) {
     }
 }
 
-}  // namespace
+}  // namespace pose_share_test
 }  // namespace ispace::proofs::poses

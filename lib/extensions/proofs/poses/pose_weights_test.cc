@@ -17,7 +17,7 @@
 #include "support/test_problems.h"
 
 namespace ispace::proofs::poses {
-namespace {
+namespace pose_weights_test {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kCells = 1500;
@@ -322,5 +322,5 @@ TEST(PoseWeights, SumsOverSensorsHoldWhatTheySee) {
     EXPECT_GT(by_check, 300);
 }
 
-}  // namespace
+}  // namespace pose_weights_test
 }  // namespace ispace::proofs::poses

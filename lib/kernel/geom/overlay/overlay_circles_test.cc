@@ -13,7 +13,7 @@
 #include "support/test_overlay.h"
 
 namespace ispace {
-namespace {
+namespace overlay_circles_test {
 
 using std::numbers::pi;
 
@@ -125,5 +125,5 @@ TEST(NearCircles, equalCirclesAreOne) {
     }
 }
 
-}  // namespace
+}  // namespace overlay_circles_test
 }  // namespace ispace

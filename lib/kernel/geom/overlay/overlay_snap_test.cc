@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace ispace::lattice {
-namespace {
+namespace overlay_snap_test {
 
 /// Closed curves of so many layers between random points.
 struct Drawing {
@@ -337,5 +337,5 @@ TEST(PlaneGraph, linesBelowOfRandomDrawings) {
     }
 }
 
-}  // namespace
+}  // namespace overlay_snap_test
 }  // namespace ispace::lattice

@@ -13,7 +13,7 @@
 #include "support/test_overlay.h"
 
 namespace ispace::lattice {
-namespace {
+namespace overlay_strips_test {
 
 using Place = std::pair<std::int32_t, std::int32_t>;
 using Label = std::tuple<std::int32_t, std::int64_t, std::uint64_t>;
@@ -202,11 +202,11 @@ TEST(OverlayStrips, NothingAndVerticalLines) {
     EXPECT_EQ(expectSameInStrips(drawing), 1U);
 }
 
-}  // namespace
+}  // namespace overlay_strips_test
 }  // namespace ispace::lattice
 
 namespace ispace {
-namespace {
+namespace overlay_strips_test {
 
 /// Views as of sensors in rooms: stars, discs whose rims touch each other and the ends of strips
 /// wherever these are, walls between.
@@ -308,5 +308,5 @@ TEST(OverlayStrips, AnyNumberOfThreads) {
     }
 }
 
-}  // namespace
+}  // namespace overlay_strips_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_overlay.h"
 
 namespace ispace {
-namespace {
+namespace overlay_test {
 
 TEST(Overlay, twoSquaresThatOverlap) {
     const std::vector<Layer> layers{layerOf({test::box(0, 0, 2, 2)}, 3),
@@ -289,5 +289,5 @@ TEST(Overlay, farAndHuge) {
     EXPECT_EQ(corner.edges().size(), 4U);
 }
 
-}  // namespace
+}  // namespace overlay_test
 }  // namespace ispace

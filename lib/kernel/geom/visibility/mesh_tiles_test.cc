@@ -15,7 +15,7 @@
 #include "support/test_plans.h"
 
 namespace ispace {
-namespace {
+namespace mesh_tiles_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -197,5 +197,5 @@ TEST(MeshTiles, ThreadsShareMeshes) {
                   &tiles.meshFor({-100 + 0.2 * i, 50 + 0.15 * ((7 * i) % 2000)}, 4));
 }
 
-}  // namespace
+}  // namespace mesh_tiles_test
 }  // namespace ispace

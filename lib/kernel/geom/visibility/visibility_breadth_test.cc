@@ -10,7 +10,7 @@
 #include "support/test_plans.h"
 
 namespace ispace {
-namespace {
+namespace visibility_breadth_test {
 
 using test::makePlan;
 using test::randomInside;
@@ -88,5 +88,5 @@ TEST(VisibilityBreadth, PrunesInTheOpen) {
     }
 }
 
-}  // namespace
+}  // namespace visibility_breadth_test
 }  // namespace ispace

@@ -9,7 +9,7 @@
 #include "support/test_visibility.h"
 
 namespace ispace {
-namespace {
+namespace visibility_rounds_test {
 
 using test::expectSound;
 using test::kInfinity;
@@ -214,5 +214,5 @@ TEST(VisibilityRounds, HiddenByAWallAndInFrontOfIt) {
     EXPECT_NEAR(before, 48, 1e-9);
 }
 
-}  // namespace
+}  // namespace visibility_rounds_test
 }  // namespace ispace

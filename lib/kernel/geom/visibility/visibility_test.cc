@@ -17,7 +17,7 @@
 #include "support/test_visibility.h"
 
 namespace ispace {
-namespace {
+namespace visibility_test {
 
 using std::numbers::pi;
 using test::areaByRays;
@@ -363,5 +363,5 @@ TEST(Visibility, LinesOfEndsAreThere) {
     }
 }
 
-}  // namespace
+}  // namespace visibility_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_schemas.h"
 
 namespace ispace {
-namespace {
+namespace yaml_test {
 
 using Texts = std::vector<std::string>;
 
@@ -293,5 +293,5 @@ TEST(ReadYaml, DamagedYamlIsReadOrRefused) {
     }
 }
 
-}  // namespace
+}  // namespace yaml_test
 }  // namespace ispace

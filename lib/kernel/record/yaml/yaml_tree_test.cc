@@ -15,7 +15,7 @@
 
 namespace ispace {
 
-namespace {
+namespace yaml_tree_test {
 
 using Texts = std::vector<std::string>;
 namespace fs = std::filesystem;
@@ -287,6 +287,6 @@ TEST_F(YamlInclude, IsBounded) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace yaml_tree_test
 
 }  // namespace ispace

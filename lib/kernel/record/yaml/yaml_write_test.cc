@@ -6,7 +6,7 @@
 #include "support/test_schemas.h"
 
 namespace ispace {
-namespace {
+namespace yaml_write_test {
 
 std::string yamlOf(const std::string& lines) {
     return writeYaml(readRecordText(lines, "a.env", testSchemas()));
@@ -78,5 +78,5 @@ TEST(ReadYaml, TakesTheKindOfItsMagicLine) {
                                  "1` or `# ispace yaml 1 layout`"});
 }
 
-}  // namespace
+}  // namespace yaml_write_test
 }  // namespace ispace

@@ -23,7 +23,7 @@ using testing::devices;
 using testing::roomDocument;
 using testing::scene;
 
-namespace {
+namespace check_scene_test {
 
 constexpr const char* kGood =
     "desk id=d at=2,2\n"
@@ -398,6 +398,6 @@ TEST(CheckScene, TenThousandThings) {
     RecordProperty("seconds", std::to_string(seconds));
 }
 
-}  // namespace
+}  // namespace check_scene_test
 
 }  // namespace ispace

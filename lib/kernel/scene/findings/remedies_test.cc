@@ -6,7 +6,7 @@
 #include "support/test_scenes.h"
 
 namespace ispace {
-namespace {
+namespace remedies_test {
 
 std::vector<Remedy> remediesIn(const Scene& scene, std::size_t most = 10) {
     return remediesOf(scene, checkScene(scene), {}, most, DeviceCatalogue());
@@ -75,5 +75,5 @@ TEST(Remedies, AreNoneWhereAllIsWellOrNoMoveHelps) {
     EXPECT_TRUE(remediesIn(full).empty());
 }
 
-}  // namespace
+}  // namespace remedies_test
 }  // namespace ispace

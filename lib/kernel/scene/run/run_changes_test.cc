@@ -12,7 +12,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace run_changes_test {
 
 namespace fs = std::filesystem;
 
@@ -151,5 +151,5 @@ TEST_F(RunChangesTest, LoadedScenesAreInTheRecord) {
     EXPECT_NE(made.failure().find("events.csv:4: "), std::string::npos) << made.failure();
 }
 
-}  // namespace
+}  // namespace run_changes_test
 }  // namespace ispace

@@ -10,7 +10,7 @@
 #include "support/test_layout.h"
 
 namespace ispace {
-namespace {
+namespace run_marks_test {
 
 constexpr const char* kHead = "t,kind,id,other,x,y,value,text\n";
 
@@ -53,5 +53,5 @@ TEST(RunMarks, WantEvents) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace run_marks_test
 }  // namespace ispace

@@ -12,7 +12,7 @@
 #include "support/test_sensors.h"
 
 namespace ispace {
-namespace {
+namespace run_reader_test {
 
 namespace fs = std::filesystem;
 
@@ -243,5 +243,5 @@ TEST(RunReader, ReadsWhatRobotsBelieve) {
     EXPECT_THROW(readAllOf(other), FormatError);
 }
 
-}  // namespace
+}  // namespace run_reader_test
 }  // namespace ispace

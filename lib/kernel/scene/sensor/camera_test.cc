@@ -16,7 +16,7 @@
 
 namespace ispace {
 
-namespace {
+namespace camera_test {
 
 Camera cameraFrom(const std::string& keys) {
     return parametersOf<Camera>(testing::sensorRecord("camera id=c " + keys), nullptr);
@@ -42,8 +42,6 @@ cv::Point2d byOpenCv(const Camera& camera, Vec3 place) {
     }
     return pixels.front();
 }
-
-}  // namespace
 
 TEST(Camera, ProjectsAsOpenCvDoes) {
     const Camera cameras[] = {
@@ -315,4 +313,5 @@ TEST(Camera, OfAStrongLensHasNoRayBeyondItsTurningPoint) {
     EXPECT_FALSE(camera.project({cos(beyond), sin(beyond), 0}));
 }
 
+}  // namespace camera_test
 }  // namespace ispace

@@ -6,7 +6,7 @@
 #include "scene/sensor/camera.h"
 
 namespace ispace {
-namespace {
+namespace density_classes_test {
 
 using enum DensityStandard;
 
@@ -48,5 +48,5 @@ TEST(DensityClasses, AreFoundByEitherName) {
         EXPECT_FALSE(findClass(name)) << name;
 }
 
-}  // namespace
+}  // namespace density_classes_test
 }  // namespace ispace

@@ -14,7 +14,7 @@ namespace ispace {
 
 using testing::findings;
 
-namespace {
+namespace laser_test {
 
 using testing::deviceFor;
 using testing::sensorRecord;
@@ -281,6 +281,6 @@ TEST(MountedPose, IsTheRobotsTurnedAndMoved) {
     EXPECT_FALSE(std::signbit(mountedPose({{}, Angle::degrees(-405)}, local).heading.degrees()));
 }
 
-}  // namespace
+}  // namespace laser_test
 
 }  // namespace ispace

@@ -15,7 +15,7 @@
 
 namespace ispace {
 
-namespace {
+namespace lens_resolution_test {
 
 class RandomLenses {
   public:
@@ -65,8 +65,6 @@ std::string nameOf(const Camera& camera) {
     for (const double d : camera.distortion) name += " " + std::to_string(d);
     return name;
 }
-
-}  // namespace
 
 TEST(LensResolution, BoundsAreAboveAllDirections) {
     RandomLenses lenses;
@@ -148,4 +146,5 @@ TEST(LensResolution, BoundsHoldAroundPoints) {
     }
 }
 
+}  // namespace lens_resolution_test
 }  // namespace ispace

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-namespace {
+namespace ranger_test {
 
 /// Reads the parameters of a record with these keys.
 template <typename Parameters>
@@ -96,6 +96,6 @@ TEST(UltrasoundOf, ReceiversAndTags) {
     EXPECT_EQ(tag("").simple_sigma, 0.1) << "as the thesis has it";
 }
 
-}  // namespace
+}  // namespace ranger_test
 
 }  // namespace ispace

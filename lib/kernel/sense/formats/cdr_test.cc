@@ -11,7 +11,7 @@
 #include "sense/formats/ros_messages.h"
 
 namespace ispace {
-namespace {
+namespace cdr_test {
 
 TEST(Cdr, AlignsNumbersFromTheEndOfTheHead) {
     const std::string message =
@@ -157,5 +157,5 @@ TEST(RosMessages, TwistsOfARecordAreMeansOverItsInterval) {
     EXPECT_NEAR(first_variance(0.1), 0.002 * 0.5 / 0.1, 1e-12);
 }
 
-}  // namespace
+}  // namespace cdr_test
 }  // namespace ispace

@@ -8,7 +8,7 @@
 #include "sense/formats/point_cloud.h"
 
 namespace ispace {
-namespace {
+namespace cloud_file_test {
 
 constexpr Encoding kEncodings[] = {Encoding::Binary, Encoding::Ascii};
 
@@ -110,5 +110,5 @@ TEST(CloudStream, PcdOfKnownSizeIsWrittenAsItComes) {
     EXPECT_EQ(written, header + kRows * kRowBytes);
 }
 
-}  // namespace
+}  // namespace cloud_file_test
 }  // namespace ispace

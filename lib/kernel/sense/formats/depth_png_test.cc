@@ -10,7 +10,7 @@
 #include "support/test_readings.h"
 
 namespace ispace {
-namespace {
+namespace depth_png_test {
 
 /// Samples of a 16-bit grey PNG.
 std::vector<std::uint16_t> samplesOf(const std::string& bytes) {
@@ -85,5 +85,5 @@ TEST(CameraInfo, Yaml) {
               "  data: [320.0, 0.0, 319.5, 0.0, 0.0, 240.0, 239.5, 0.0, 0.0, 0.0, 1.0, 0.0]\n");
 }
 
-}  // namespace
+}  // namespace depth_png_test
 }  // namespace ispace

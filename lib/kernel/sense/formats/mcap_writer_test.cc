@@ -7,7 +7,7 @@
 #include "sense/formats/ros_messages.h"
 
 namespace ispace {
-namespace {
+namespace mcap_writer_test {
 
 std::string fileOf(const std::vector<std::string>& pieces) {
     std::string out;
@@ -79,5 +79,5 @@ TEST(RosSchemas, HoldAllTheTypesTheyName) {
               "geometry_msgs/msg/PointStamped");
 }
 
-}  // namespace
+}  // namespace mcap_writer_test
 }  // namespace ispace

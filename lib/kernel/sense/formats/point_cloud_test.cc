@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-namespace {
+namespace point_cloud_test {
 
 Point3 pointAt(const PointCloud& cloud, std::size_t index) {
     return {cloud.xyz[3 * index], cloud.xyz[3 * index + 1], cloud.xyz[3 * index + 2]};
@@ -134,9 +134,9 @@ TEST(RangerCloud, IsTheRaysTimesTheDepths) {
     }
 }
 
-}  // namespace
+}  // namespace point_cloud_test
 
-namespace {
+namespace point_cloud_test {
 
 const float kNan = std::nanf("");
 
@@ -227,6 +227,6 @@ TEST(PointCloud, NoPoints) {
     EXPECT_TRUE(plyOf(cloud, Encoding::Binary).ends_with("end_header\n"));
 }
 
-}  // namespace
+}  // namespace point_cloud_test
 
 }  // namespace ispace

@@ -11,7 +11,7 @@
 
 namespace ispace {
 
-namespace {
+namespace reading_text_test {
 
 TEST(ScanJsonl, HeaderLine) {
     EXPECT_EQ(scanHeaderLine({}, 0), "{\"schema\":\"ispace-scan/1\",\"history\":[],\"seed\":0}\n");
@@ -125,9 +125,9 @@ TEST(ScanJsonl, NoBeamsIsAnEmptyList) {
     EXPECT_TRUE(out.ends_with("\"ranges\":[]}\n")) << out;
 }
 
-}  // namespace
+}  // namespace reading_text_test
 
-namespace {
+namespace reading_text_test {
 
 std::string fieldOf(std::string_view text) {
     std::string out;
@@ -234,9 +234,9 @@ TEST(ReadingCsv, BurstRows) {
     EXPECT_EQ(rowOf(burst), "t1,1,0.1,1,2,0.5,0.001,1.5,1.25,0.75,2,u1=0.0125 u4=0.01\n");
 }
 
-}  // namespace
+}  // namespace reading_text_test
 
-namespace {
+namespace reading_text_test {
 
 TEST(CarmenLog, HeaderIsComments) {
     std::istringstream lines(carmenHeader());
@@ -304,6 +304,6 @@ TEST(CarmenLog, ReadersAgreeOnBeamsOfAFanThatIsNotSymmetric) {
     EXPECT_NEAR(beamOf(sensor, around, 90).by_start, std::numbers::pi / 2, 1e-12);
 }
 
-}  // namespace
+}  // namespace reading_text_test
 
 }  // namespace ispace

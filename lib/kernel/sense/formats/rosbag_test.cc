@@ -6,7 +6,7 @@
 #include "sense/formats/ros_messages.h"
 
 namespace ispace {
-namespace {
+namespace rosbag_test {
 
 TEST(RosBag, ChannelsNameTheirQuality) {
     const McapChannel map = bagChannel(0, "/map", {.depth = 1, .is_latched = true});
@@ -35,5 +35,5 @@ TEST(RosBag, FilesHoldTheQualityAndMetadataCountsMessages) {
         EXPECT_NE(text.find(part), std::string::npos) << part << text;
 }
 
-}  // namespace
+}  // namespace rosbag_test
 }  // namespace ispace

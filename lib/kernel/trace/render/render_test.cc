@@ -11,7 +11,7 @@
 #include "trace/ray_world.h"
 
 namespace ispace {
-namespace {
+namespace render_test {
 
 using testing::scene;
 
@@ -237,5 +237,5 @@ TEST(Rendering, BecomesTheSameBytesInLargePictures) {
     }
 }
 
-}  // namespace
+}  // namespace render_test
 }  // namespace ispace

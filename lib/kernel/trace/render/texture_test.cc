@@ -13,7 +13,7 @@
 #include "trace/render/render.h"
 
 namespace ispace {
-namespace {
+namespace texture_test {
 
 using testing::scene;
 
@@ -167,5 +167,5 @@ TEST_F(TextureTest, WhatCannotBeReadIsSaidWithItsPlace) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace texture_test
 }  // namespace ispace

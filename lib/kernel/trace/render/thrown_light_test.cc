@@ -12,7 +12,7 @@
 #include "trace/render/render.h"
 
 namespace ispace {
-namespace {
+namespace thrown_light_test {
 
 constexpr int kSize = 80;
 
@@ -96,5 +96,5 @@ TEST(ThrownLight, IsAPictureThatThePeopleInTheRoomCanRead) {
     EXPECT_THROW(wallOf("projector texture=nowhere.png\n"), FormatError) << "off";
 }
 
-}  // namespace
+}  // namespace thrown_light_test
 }  // namespace ispace
