@@ -12,21 +12,20 @@
 #include <utility>
 
 #include "base/error.h"
+#include "extensions/ros/goal_status.h"
 #include "sense/formats/cdr.h"
 
 namespace ispace::ros {
 
 namespace {
 
-constexpr std::string_view kGoalTopic = "/goal_pose", kAction = "/navigate_to_pose";
 constexpr std::size_t kDepth = 10;
 /// Goals of an action that are remembered for their results, those under way included.
 constexpr std::size_t kMostGoals = 32;
 /// Requests for the result of a goal that are answered at its end.
 constexpr std::size_t kMostWaiting = 16;
 
-// Of action_msgs/msg/GoalStatus and action_msgs/srv/CancelGoal.
-constexpr std::int8_t kUnknown = 0, kExecuting = 2, kSucceeded = 4, kCanceled = 5, kAborted = 6;
+// Of action_msgs/srv/CancelGoal.
 constexpr std::int8_t kNoError = 0, kRejected = 1, kUnknownGoal = 2, kTerminated = 3;
 
 bool isUnderWay(std::int8_t status) { return status == kExecuting; }
@@ -74,7 +73,8 @@ void RosActions::sync() {
     for (const auto& [number, entry] : feed_->entries()) {
         const std::string& topic = entry.channel.topic;
         if (entry.channel.row != nullptr && entry.channel.isInput() && topic.ends_with(kGoalTopic))
-            names.insert(topic.substr(0, topic.size() - kGoalTopic.size()) + std::string(kAction));
+            names.insert(topic.substr(0, topic.size() - kGoalTopic.size()) +
+                         std::string(kNavigate));
     }
     std::erase_if(actions_, [&](const auto& one) {
         if (names.contains(one.first)) return false;
@@ -112,7 +112,7 @@ void RosActions::takeGoal(const std::string& name, Action& action, const RosCall
     const std::string pose = std::string(call.content).erase(kCdrHead.size(), goal.id.size());
     feed_->sync();
     const std::string topic =
-        name.substr(0, name.size() - kAction.size()) + std::string(kGoalTopic);
+        name.substr(0, name.size() - kNavigate.size()) + std::string(kGoalTopic);
     const auto numbers = feed_->numbersOf(topic);
     const bool is_new = std::none_of(action.goals.begin(), action.goals.end(),
                                      [&](const Goal& one) { return one.id == goal.id; });
@@ -197,9 +197,7 @@ void RosActions::end(const std::string& name, const GoalId& id, RosGoalEnd end,
     const auto goal = std::find_if(action.goals.begin(), action.goals.end(),
                                    [&](const Goal& one) { return one.id == id; });
     if (goal == action.goals.end()) return;
-    goal->status = end == RosGoalEnd::Reached    ? kSucceeded
-                   : end == RosGoalEnd::Canceled ? kCanceled
-                                                 : kAborted;
+    goal->status = statusOf(end);
     goal->error = why;
     sendStatus(action);
     for (const RosCaller& caller : std::exchange(goal->waiting, {}))

@@ -15,6 +15,7 @@
 #include "base/error.h"
 #include "base/json_writer.h"
 #include "base/message.h"
+#include "extensions/ros/goal_status.h"
 #include "extensions/ros/ros_api.h"
 #include "extensions/ros/ros_parameters.h"
 #include "extensions/ros/ros_text.h"
@@ -367,10 +368,6 @@ void RosbridgeDialogue::publish(const Json& request) {
 
 namespace {
 
-constexpr std::string_view kNavigate = "/navigate_to_pose", kGoalTopic = "/goal_pose";
-/// Of action_msgs/GoalStatus; rosbridge has 0 for goals that are refused.
-enum GoalStatus { kRefused = 0, kSucceeded = 4, kCanceled = 5, kAborted = 6 };
-
 void writeTime(JsonWriter& json, const char* name, SimTime time) {
     constexpr std::int64_t kSecond = 1'000'000'000;
     json.key(name).beginObject().key("sec").value(std::int64_t{time.count() / kSecond});
@@ -393,7 +390,7 @@ void RosbridgeDialogue::sendGoal(const Json& request) {
                          RosType::PoseStamped)
                  : nullptr;
     if (channel == nullptr)
-        return answerGoal(goal, kRefused,
+        return answerGoal(goal, kUnknown,
                           "there is no action " + excerpt(name) +
                               (type.empty() ? "" : " of type " + excerpt(type)));
     const Json& args = memberOf(request, "args");
@@ -414,7 +411,7 @@ void RosbridgeDialogue::sendGoal(const Json& request) {
     } catch (const FormatError& error) {
         refusal = error.diagnostics().front().message;
     }
-    if (!refusal.empty()) return answerGoal(goal, kRefused, refusal);
+    if (!refusal.empty()) return answerGoal(goal, kUnknown, refusal);
     goals_[robot] = std::move(goal);
 }
 
@@ -459,7 +456,7 @@ void RosbridgeDialogue::beginTransforms(const std::string& id, const std::string
     else if (action.empty())
         report(Level::Error, "a goal of " + std::string(kRepublisher) + ": " + refusal);
     else
-        answerGoal({.id = JsonWriter().value(id).take(), .action = action}, kRefused, refusal);
+        answerGoal({.id = JsonWriter().value(id).take(), .action = action}, kUnknown, refusal);
 }
 
 /// Takes goals and their cancellations by topics, as clients of ROS 1 send them. \returns false for
@@ -517,11 +514,7 @@ void RosbridgeDialogue::endGoal(const std::string& robot, std::int64_t number, R
     if (found == goals_.end() || found->second.number != number) return;
     const Goal goal = std::move(found->second);
     goals_.erase(found);
-    answerGoal(goal,
-               end == RosGoalEnd::Reached    ? kSucceeded
-               : end == RosGoalEnd::Canceled ? kCanceled
-                                             : kAborted,
-               why);
+    answerGoal(goal, statusOf(end), why);
 }
 
 /// Sends the result of a goal: of a refused one the reason.
@@ -529,13 +522,13 @@ void RosbridgeDialogue::answerGoal(const Goal& goal, int status, const std::stri
     JsonWriter json;
     json.beginObject().key("op").value("action_result").key("action").value(goal.action);
     json.key("values");
-    if (status == kRefused) {
+    if (status == kUnknown) {
         json.value(error);
     } else {
         json.beginObject().key("error_code").value(status == kAborted ? 1 : 0);
         json.key("error_msg").value(error).endObject();
     }
-    json.key("status").value(status).key("result").value(status != kRefused);
+    json.key("status").value(status).key("result").value(status != kUnknown);
     sendText(json.take() + idMember(goal.id) + '}');
 }
 
