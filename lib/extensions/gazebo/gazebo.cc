@@ -28,6 +28,15 @@ constexpr int kMaxDepth = 64;  // models in models
 /// Units of Budget for a shape, which may become a wall, and for a point of a polyline.
 constexpr std::size_t kShapeWork = 80, kPointWork = 10;
 
+/// The rotation from one direction to another, less than half a turn away: that of
+/// FromTwoVectors(), which takes seconds to compile for opposite ones.
+Eigen::Quaterniond smallTurn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    const Eigen::Vector3d a = from.normalized(), b = to.normalized();
+    const Eigen::Vector3d axis = a.cross(b);
+    const double s = std::sqrt((1 + b.dot(a)) * 2), inverse = 1 / s;
+    return {s * 0.5, axis.x() * inverse, axis.y() * inverse, axis.z() * inverse};
+}
+
 /// Turns a pose that physics has tilted a little, as by gravity on a floor, back upright.
 Transform levelled(Transform pose) {
     constexpr double kSettled = 2e-3;  // sine of the angle
@@ -35,7 +44,7 @@ Transform levelled(Transform pose) {
         const Eigen::Vector3d axis = pose.linear().col(i);
         if (std::hypot(axis.x(), axis.y()) > kSettled) continue;
         const Eigen::Vector3d upright(0, 0, std::copysign(1.0, axis.z()));
-        pose.linear() = Eigen::Quaterniond::FromTwoVectors(axis, upright) * pose.linear();
+        pose.linear() = smallTurn(axis, upright) * pose.linear();
         break;
     }
     return pose;
