@@ -2,7 +2,7 @@
 // The one list of extensions, which the configuration of the build chooses.
 #pragma once
 
-#include "cli/extension.h"
+#include "cli/extensions.h"
 
 namespace ispace {
 

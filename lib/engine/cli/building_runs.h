@@ -52,15 +52,4 @@ class BuildingWorlds : public Worlds {
     virtual void recordLifts(const std::string& folder) = 0;
 };
 
-/// The runs of buildings that an extension brings, as functions.
-struct BuildingRuns {
-    /// \throws FormatError for scenes, records and trips that keep a run from beginning
-    std::unique_ptr<BuildingWorlds> (*open)(const SiteScene& building,
-                                            const BuildingRunOptions& options) = nullptr;
-    /// Returns findings about what joins the storeys that concern runs alone.
-    std::vector<Diagnostic> (*findings)(const SiteScene& building) = nullptr;
-    /// The extension, filled in by Extensions; it names one that the build lacks if `open` is null.
-    std::string_view extension = {};
-};
-
 }  // namespace ispace

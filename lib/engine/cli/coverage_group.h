@@ -84,7 +84,7 @@ class CoverageGroup {
     virtual void measure(const MeasuredSite& site, CoverageFindings& findings) = 0;
 };
 
-/// A row of Extensions, see cli/extension.h.
+/// A row of Extensions, see cli/extensions.h.
 struct CoverageRow {
     std::string_view extension;
     std::unique_ptr<CoverageGroup> (*make)();  ///< null for requirements that this build lacks

@@ -41,7 +41,7 @@ class DrawingGroup {
     [[nodiscard]] virtual std::int64_t draw(const DrawnRun& run) const = 0;
 };
 
-/// A row of Extensions, see cli/extension.h.
+/// A row of Extensions, see cli/extensions.h.
 struct DrawingRow {
     std::string_view extension;
     std::unique_ptr<DrawingGroup> (*make)();  ///< null for one that this build lacks

@@ -34,7 +34,7 @@ class ImportGroup {
     [[nodiscard]] virtual std::string repeated(const ImportOptions& /*import*/) const { return ""; }
 };
 
-/// A row of Extensions, see cli/extension.h.
+/// A row of Extensions, see cli/extensions.h.
 struct ImportRow {
     std::string_view extension;
     std::unique_ptr<ImportGroup> (*make)();

@@ -25,23 +25,24 @@ struct RecordedRun {
     const SceneRules& rules;
 };
 
-/// The options of one extension, and their values: an object is made for each command line.
+/// The options of one extension, and their values: an object is made for each command line. One
+/// without options has report() alone.
 class RecordGroup {
   public:
     virtual ~RecordGroup() = default;
     /// Declares the options, bound to members. The group begins with line.group(HEADING).
-    virtual void declare(CommandLine& line) = 0;
+    virtual void declare(CommandLine& /*line*/) {}
     /// Checks the options; opens no file. \throws UsageError, also without a record
-    virtual void take(const CommandLine& line) = 0;
-    [[nodiscard]] virtual bool isAsked() const = 0;
+    virtual void take(const CommandLine& /*line*/) {}
+    [[nodiscard]] virtual bool isAsked() const { return false; }
     /// Prints or writes what was asked for. \pre isAsked(); the files of the record are complete
-    virtual void conclude(const RecordedRun& run) const = 0;
+    virtual void conclude(const RecordedRun& /*run*/) const {}
     /// Adds its sections to `simrun --report`, asked or not; they live as long as the group.
     /// \pre the files of the record are complete
     virtual void report(const RecordedRun& /*run*/, SiteParts& /*parts*/) {}
 };
 
-/// A row of Extensions, see cli/extension.h.
+/// A row of Extensions, see cli/extensions.h.
 struct RecordRow {
     std::string_view extension;
     std::unique_ptr<RecordGroup> (*make)();

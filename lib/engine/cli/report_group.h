@@ -86,7 +86,7 @@ class ReportGroup {
                                               const std::string& file) const = 0;
 };
 
-/// A row of Extensions, see cli/extension.h.
+/// A row of Extensions, see cli/extensions.h.
 struct ReportRow {
     std::string_view extension;
     std::unique_ptr<ReportGroup> (*make)();  ///< null for a format that this build lacks

@@ -67,7 +67,7 @@ class BridgeGroup {
     virtual void commit(const CommonOptions& /*common*/) {}
 };
 
-/// A row of Extensions, see cli/extension.h.
+/// A row of Extensions, see cli/extensions.h.
 struct BridgeRow {
     std::string_view extension;
     std::unique_ptr<BridgeGroup> (*make)();

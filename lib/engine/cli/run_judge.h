@@ -56,7 +56,7 @@ class JudgeGroup {
     [[nodiscard]] virtual std::unique_ptr<RunJudge> judge(std::span<const RunRoom> rooms) const = 0;
 };
 
-/// A row of Extensions, see cli/extension.h.
+/// A row of Extensions, see cli/extensions.h.
 using MakeJudge = std::unique_ptr<JudgeGroup> (*)();
 
 /// The judges that extensions add to one command line.

@@ -36,7 +36,7 @@ class WordGroup {
     virtual void declare(CommandLine& line) = 0;
 };
 
-/// A row of Extensions, see cli/extension.h. \tparam Group a WordGroup with what it does
+/// A row of Extensions, see cli/extensions.h. \tparam Group a WordGroup with what it does
 template <typename Group>
 struct WordRow {
     std::string_view extension;

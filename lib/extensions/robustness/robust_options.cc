@@ -96,8 +96,6 @@ class RobustLayouts final : public ArrangeGroup {
         how.cases = casesIn(input, how);
     }
 
-    void judge(const ArrangedSite& /*site*/, ArrangeFindings& /*findings*/) const override {}
-
   private:
     enum class Of { Nothing, Rooms, Failures, Mounting, Crowd };
 

@@ -59,11 +59,6 @@ class RunGroup final : public CoverageGroup {
 /// The run in `simrun --report`. It has no option.
 class RunReport final : public RecordGroup {
   public:
-    void declare(CommandLine& /*line*/) override {}
-    void take(const CommandLine& /*line*/) override {}
-    [[nodiscard]] bool isAsked() const override { return false; }
-    void conclude(const RecordedRun& /*run*/) const override {}
-
     void report(const RecordedRun& run, SiteParts& parts) override {
         const SiteScene& building = run.input.building;
         if (building.isRoomAlone() && !RunReader(run.record).next()) return;

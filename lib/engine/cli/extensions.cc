@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/extension.h"
+#include "cli/extensions.h"
 
 #include <algorithm>
 

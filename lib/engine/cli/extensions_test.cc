@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/extension.h"
+#include "cli/extensions.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
+#include "cli/building_runs.h"
+
 namespace ispace {
-namespace {
+namespace extensions_test {
 
 std::vector<Diagnostic> found(const SiteScene& /*building*/) { return {}; }
 std::unique_ptr<BuildingWorlds> opened(const SiteScene& /*building*/,
@@ -31,5 +33,5 @@ TEST(Extensions, NameTheOneThatWouldRunBuildings) {
     EXPECT_EQ(none.buildings().extension, "lifts");
 }
 
-}  // namespace
+}  // namespace extensions_test
 }  // namespace ispace
