@@ -115,16 +115,16 @@ class RobustnessGroup final : public CoverageGroup {
         record_ = records.back();
     }
 
-    [[nodiscard]] bool isAsked() const override { return tolerance_ || failures_ > 0 || crowd_; }
+    [[nodiscard]] bool isAsked() const override { return tolerance_ || failures_ || crowd_; }
 
     /// \throws UsageError as worstFailures(), UnmetError as CrowdFloor
     void measure(const MeasuredSite& site, CoverageFindings& findings) override {
         const SiteScene& building = site.input.building;
         const SiteCoverage& planned = site.coverage;
         robustness_.requirements.assign(site.requirements.begin(), site.requirements.end());
-        robustness_.failures = failures_;
-        if (failures_ > 0)
-            robustness_.losses = worstFailuresOfSite(planned, failures_, site.requirements);
+        robustness_.failures = failures_.value_or(0);
+        if (failures_)
+            robustness_.losses = worstFailuresOfSite(planned, *failures_, site.requirements);
         const auto progress = makeProgress("coverage", site.common.progress, site.common.quiet);
         if (crowd_) {
             robustness_.crowd_of = crowd_->of;
@@ -143,7 +143,7 @@ class RobustnessGroup final : public CoverageGroup {
 
   private:
     std::optional<MountingTolerance> tolerance_;
-    int failures_ = 0;
+    std::optional<int> failures_;
     std::optional<CrowdChoice> crowd_;
     std::string record_;
     Robustness robustness_;
