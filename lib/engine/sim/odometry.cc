@@ -48,11 +48,11 @@ struct ArcShape {
 };
 
 /// The way after a share, and the cosine and sine of the turn.
-struct Part {
+struct ArcPart {
     double x, y, cos, sin;
 };
 
-ISPACE_INLINE Part partOf(ArcShape course, double share) {
+ISPACE_INLINE ArcPart partOf(ArcShape course, double share) {
     const double angle = share * course.half, square = angle * angle;
     const double over = sineOver(square), c = cosine(square), s = angle * over;
     // The chord of an arc of this angle points half of it to the side.
@@ -74,7 +74,7 @@ ISPACE_SIMD_CLONES
 void carryAlong(ArcShape course, Begin begin, double first, double step, int count, double* x,
                 double* y, double* cos, double* sin) {
     for (int k = 0; k < count; ++k) {
-        const Part part = partOf(course, first + k * step);
+        const ArcPart part = partOf(course, first + k * step);
         x[k] = begin.x + (part.x + (part.cos * begin.mount_x - part.sin * begin.mount_y));
         y[k] = begin.y + (part.y + (part.sin * begin.mount_x + part.cos * begin.mount_y));
         cos[k] = part.cos * begin.forward_x - part.sin * begin.forward_y;
@@ -98,7 +98,7 @@ ArcPath::ArcPath(const Pose2& from, const Pose2& to)
 Pose2 ArcPath::at(double share) const {
     if (share == 0) return from_;
     if (share == 1) return to_;
-    const Part part = partOf({half_, whole_, chord_.x, chord_.y}, share);
+    const ArcPart part = partOf({half_, whole_, chord_.x, chord_.y}, share);
     return {from_.position + Vec2{part.x, part.y}, wrapped(from_.heading + share * turn_)};
 }
 

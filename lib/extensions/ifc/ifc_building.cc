@@ -25,7 +25,7 @@ namespace {
 /// box may hold a handrail as high as this.
 constexpr double kStep = 0.6, kHandrail = 1.5;
 /// Boxes narrower or lower than this are railings and landings, metres.
-constexpr double kMinWidth = 0.5, kMinHeight = 1.0;
+constexpr double kNarrowestFlight = 0.5, kLowestFlight = 1.0;
 /// Doors of a lift lie this far before its cabin, behind the wall of its shaft, or within it.
 constexpr double kBeforeCabin = 0.8, kIntoCabin = 0.3;
 /// Least cosine of the angle between a door and the front of its cabin.
@@ -77,8 +77,8 @@ std::vector<Record> flightsOf(const StoreyedDocument& building, const IfcStoreys
         }
         const auto below = floorAt(building, box.bottom, kStep);
         const auto above = floorAt(building, box.top, kHandrail);
-        if (box.width < kMinWidth || box.top - box.bottom < kMinHeight || !below || !above ||
-            *below >= *above)
+        if (box.width < kNarrowestFlight || box.top - box.bottom < kLowestFlight || !below ||
+            !above || *below >= *above)
             continue;
         if (!scene) scene = makeSiteScene(building, {}, {});
         const std::string id = names.freeId("stairs", "stairs");

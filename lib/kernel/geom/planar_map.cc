@@ -215,7 +215,7 @@ namespace {
 
 using Index = std::uint32_t;
 
-constexpr Index kNone = ~Index{0};
+constexpr Index kFree = ~Index{0};
 
 /// Multilinear hashing by random keys: any two positions collide with the probability of random
 /// hashes (O. Kaser, D. Lemire, Strongly universal string hashing is fast, 2014).
@@ -241,7 +241,7 @@ class PlaceHash {
 class PlaceTable {
   public:
     struct Entry {
-        Index place = kNone, hash = 0;
+        Index place = kFree, hash = 0;
     };
 
     explicit PlaceTable(std::span<const FloatPlace> places)
@@ -252,7 +252,7 @@ class PlaceTable {
     /// Returns the first equal position; inserts this one if there is none yet.
     Index find(const Entry& entry) {
         Entry* slot = &slots_[slotOf(entry.hash)];
-        for (; slot->place != kNone; slot = next(slot))
+        for (; slot->place != kFree; slot = next(slot))
             if (slot->hash == entry.hash && places_[slot->place] == places_[entry.place])
                 return slot->place;
         *slot = entry;
@@ -268,9 +268,9 @@ class PlaceTable {
     void grow() {
         const std::vector<Entry> old = std::exchange(slots_, std::vector<Entry>(4 * slots_.size()));
         for (const Entry& entry : old) {
-            if (entry.place == kNone) continue;
+            if (entry.place == kFree) continue;
             Entry* slot = &slots_[slotOf(entry.hash)];
-            while (slot->place != kNone) slot = next(slot);
+            while (slot->place != kFree) slot = next(slot);
             *slot = entry;
         }
     }

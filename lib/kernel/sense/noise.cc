@@ -13,7 +13,6 @@ namespace ispace {
 
 namespace {
 
-using noise_loops::kNoReturn;
 using noise_loops::Parameters;
 
 /// Number of elements processed together; a multiple of the block size of random numbers.

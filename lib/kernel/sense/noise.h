@@ -12,12 +12,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "base/random.h"
 #include "base/simd.h"
 #include "scene/sensor/sensor_keys.h"
+#include "trace/rays.h"
 
 namespace ispace {
 
@@ -62,8 +62,6 @@ struct Parameters {
     double resolution = 0, per_metre = 0;  // per_metre is its inverse
     float min_range = 0, max_range = 0;
 };
-
-constexpr float kNoReturn = std::numeric_limits<float>::infinity();
 
 /// Adds bias and spread. `normal` null: no spread.
 ISPACE_INLINE void spread(const Parameters& parameters, std::size_t count, const float* normal,

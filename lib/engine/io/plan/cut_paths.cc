@@ -24,14 +24,14 @@ namespace ispace {
 namespace {
 
 // Edges cross their neighbours, and some of other solids; uniting more of them takes work.
-constexpr std::size_t kFreeCrossings = 8, kUnitsPerCrossing = 16;
+constexpr std::size_t kFreeMeetings = 8, kUnitsPerMeeting = 16;
 
 /// Unites solids no wider than a wall that meet at edges. Keeps wider ones, and a solid inside
 /// another.
-class Joiner {
+class SolidUnion {
   public:
     /// \param extent of the plan
-    Joiner(std::vector<Polygon> solids, double extent, Budget& work)
+    SolidUnion(std::vector<Polygon> solids, double extent, Budget& work)
         : solids_(std::move(solids)),
           widest_(widestWall(extent)),
           is_wide_(solids_.size()),
@@ -75,7 +75,7 @@ class Joiner {
             for (const std::size_t k : search.near(bounds(edges[i]), 0)) {
                 if (k >= i) break;
                 if (!intersects(edges[i], edges[k])) continue;
-                if (++crossings > kFreeCrossings * edges.size() && !work_.take(kUnitsPerCrossing))
+                if (++crossings > kFreeMeetings * edges.size() && !work_.take(kUnitsPerMeeting))
                     throw FormatError(Diagnostic{
                         "", 0, 0, "crossings of the cut's outlines make " + work_.excess()});
                 const std::size_t a = rootOf(solid_of[i]), b = rootOf(solid_of[k]);
@@ -106,7 +106,7 @@ std::vector<PlanPath> cutPaths(Slice slice, Budget& work) {
     const Box2 extent = boundsOf(slice.lines());
     std::vector<PlanPath> paths;
     // Ends of triangles are not corners: the plan's opening finder would use them.
-    Joiner joiner(std::move(slice.solids), std::max(extent.width(), extent.depth()), work);
+    SolidUnion joiner(std::move(slice.solids), std::max(extent.width(), extent.depth()), work);
     for (Polygon& outline : simplified(joiner.join(), kMeshStraight))
         paths.push_back({std::move(outline), true, 0});
     for (const Segment2& sheet : slice.sheets) paths.push_back({{sheet.a, sheet.b}, false, 0});

@@ -213,9 +213,10 @@ void append(PlanPath& path, const PlanPath& next) {
 }
 
 /// Finds the ends of open paths by their positions.
-class Joiner {
+class PathJoiner {
   public:
-    explicit Joiner(std::vector<PlanPath> paths) : paths_(std::move(paths)), used_(paths_.size()) {
+    explicit PathJoiner(std::vector<PlanPath> paths)
+        : paths_(std::move(paths)), used_(paths_.size()) {
         for (std::size_t i = 0; i < paths_.size(); ++i) {
             if (paths_[i].closed) continue;
             add(paths_[i].points.front(), i);
@@ -391,7 +392,7 @@ std::vector<PlanPath> normalisedLines(std::vector<PlanPath> paths, double snap, 
 }
 
 std::vector<PlanPath> joinedAtEnds(std::vector<PlanPath> paths) {
-    return Joiner(std::move(paths)).join();
+    return PathJoiner(std::move(paths)).join();
 }
 
 std::optional<std::vector<PlanPath>> withoutJoints(const std::vector<PlanPath>& paths,
