@@ -82,7 +82,7 @@ class ArrangeGroup {
     /// \pre isAsked() \throws UsageError for names that the site lacks, and as readers of files
     virtual void aim(const ArrangeInput& input, ArrangeOptions& how,
                      std::span<RoomGoals> goals) const = 0;
-    /// Judges a layout, if its rules say more than that it is found. \pre isAsked()
+    /// Judges a layout; groups whose rules the search itself keeps do not. \pre isAsked()
     virtual void judge(const ArrangedSite& /*site*/, ArrangeFindings& /*findings*/) const {}
 };
 

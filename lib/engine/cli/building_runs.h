@@ -4,22 +4,21 @@
 // cli/extension.h.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "base/error.h"
 #include "scene/run/run_changes.h"
 #include "scene/run/run_reader.h"
+#include "scene/scene.h"
 #include "sim/replay.h"
 #include "sim/simulation.h"
 #include "sim/world.h"
 #include "sim/worlds.h"
-#include "site/site_scene.h"
+#include "site/storeys.h"
 
 namespace ispace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a folder of lib/extensions contributes, in one value of functions. What they make is
-// declared here alone: an extension includes the headers of the groups that it has.
+// What a folder of lib/extensions contributes, in one value of functions. The classes they make are
+// only declared here: an extension includes the headers of its own groups and no others.
 //
 // Each folder defines one function in its extension.cc, in the namespace `extension`:
 //

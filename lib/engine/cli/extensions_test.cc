@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
+#include <vector>
 
+#include "base/error.h"
 #include "cli/building_runs.h"
 
 namespace ispace {

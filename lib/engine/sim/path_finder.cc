@@ -24,7 +24,7 @@ constexpr double kMaxCells = 2.5e5;
 constexpr std::int32_t kSide = 12, kCorner = 17;
 /// A point may lie this far from the nearest free cell, in metres: movers stand at walls. The
 /// straight line between them keeps kThin away from all bodies.
-constexpr double kBeside = 0.5, kThin = 0.01;
+constexpr double kMostFromCell = 0.5, kThin = 0.01;
 
 /// Returns a grid over the box with cells of kCell, or larger ones where the area has more than
 /// kMaxCells of these.
@@ -179,13 +179,13 @@ bool PathFinder::isOverHole(const Segment2& way) const {
 std::optional<std::size_t> PathFinder::cellNear(Point2 p) const {
     const double size = grid_.limits.width() / grid_.columns;
     const Point2 at = grid_.toCells(p);
-    const auto reach = static_cast<int>(std::ceil(kBeside / size));
+    const auto reach = static_cast<int>(std::ceil(kMostFromCell / size));
     const double largest = 2 * (kMaxCells + reach);
     if (!(std::abs(at.x) < largest && std::abs(at.y) < largest)) return std::nullopt;
     const int column = static_cast<int>(std::lround(at.x));
     const int row = static_cast<int>(std::lround(at.y));
     std::optional<std::size_t> best;
-    double least = kBeside;
+    double least = kMostFromCell;
     for (int r = std::max(0, row - reach); r <= std::min(grid_.rows - 1, row + reach); ++r)
         for (int c = std::max(0, column - reach); c <= std::min(grid_.columns - 1, column + reach);
              ++c) {

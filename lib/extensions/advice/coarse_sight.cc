@@ -28,7 +28,7 @@ constexpr double kLeastEdge = 0.05, kMostEdge = 0.5;
 /// Errors of cells along an outline cancel out, but where an edge of a field of view runs through
 /// centres, which counts them all: measured in furnished rooms, views rarely have so many more, and
 /// never twice as many more, cells of kUsualEdge than were counted.
-constexpr double kCellsOfView = 8, kUsualEdge = 0.18;
+constexpr double kViewErrorCells = 8, kUsualEdge = 0.18;
 
 double edgeFor(const Box2& limits, CoarseSight::Cells cells) {
     return std::clamp(std::sqrt(limits.width() * limits.depth() / static_cast<double>(cells)),
@@ -37,7 +37,7 @@ double edgeFor(const Box2& limits, CoarseSight::Cells cells) {
 
 /// Outlines pass more of smaller cells.
 double errorOf(double cell) {
-    return kCellsOfView * cell * std::sqrt(std::max(1.0, kUsualEdge / std::sqrt(cell)));
+    return kViewErrorCells * cell * std::sqrt(std::max(1.0, kUsualEdge / std::sqrt(cell)));
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ namespace ispace::advice {
 namespace {
 
 /// Errors of cells along the outlines of shadows cancel out but for some.
-constexpr double kCellsOfShadow = 16;
+constexpr double kShadowErrorCells = 16;
 
 CellChanges changesBetween(const CellSet& before, const CellSet& after) {
     CellChanges changes;
@@ -63,7 +63,7 @@ MoveTrials::MoveTrials(const Scene& scene, const Coverage& coverage, const Sugge
     const Environment& environment = scene.environment;
     target_ = coverage.target;
     cell_ = target_.grid.cellArea();
-    if (coverage.report.coverage.exact) error_ = kCellsOfShadow * cell_;
+    if (coverage.report.coverage.exact) error_ = kShadowErrorCells * cell_;
     const VisibleArea sight(environment, plane_);
     times_.resize(target_.grid.size());
     heard_.resize(target_.grid.size());

@@ -45,7 +45,7 @@ constexpr double kThinnestDrawn = 0.04, kThickestDrawn = 0.8;
 constexpr double kLeastAround = 2;
 
 /// Units of Budget for an entity that is not read: its names are copied.
-constexpr std::size_t kUnreadEntity = 20;
+constexpr std::size_t kUnreadEntityWork = 20;
 
 constexpr Affine kMirror{{-1, 0}, {0, 1}, {}};
 
@@ -157,7 +157,7 @@ class Expander {
     void addUnread(const std::vector<UnreadThing>& things, const Affine& frame,
                    const std::string& layer, int depth) {
         for (const UnreadThing& thing : things) {
-            spendAt(thing.line, kUnreadEntity);
+            spendAt(thing.line, kUnreadEntityWork);
             const std::string& own = layerOf(depth > 0 && thing.layer == "0" ? layer : thing.layer);
             if (!layers_.mayBeWall(own)) continue;
             UnreadThing& placed = unread_.emplace_back(thing);

@@ -62,7 +62,7 @@ constexpr double kThinnestStroke = 0.08, kThickestStroke = 0.8;
 constexpr double kLongestPaper = 1.5;  // metres: more than A0
 constexpr const char* kOddClip = "element with a clip-path that is not read";
 /// Units of Budget for an element that is not read: its names are copied.
-constexpr std::size_t kUnreadElement = 20;
+constexpr std::size_t kUnreadElementWork = 20;
 
 /// Scales of plans on paper, and in feet and inches: 1/48 is 1/4" to the foot.
 constexpr std::array<std::pair<const char*, double>, 6> kScales{
@@ -378,7 +378,7 @@ class SvgReader {
         for (const pugi::xml_node child : node.children()) {
             pugi::xml_node shape = child;
             if (child.type() != pugi::node_element) continue;
-            spend(kUnreadElement);
+            spend(kUnreadElementWork);
             const SvgElement element = elementAt(child);
             if (element.properties[SvgProperty::Display] == "none") continue;
             Affine placed = frame * transformOf(element, around.view);
@@ -475,7 +475,7 @@ class SvgReader {
             href.starts_with('#') ? ids_.find(std::string(href.substr(1))) : ids_.end();
         if (target == ids_.end()) {
             ++drawing_.left_out["uses of what the file lacks"];
-            spend(kUnreadElement);
+            spend(kUnreadElementWork);
             drawing_.unread.push_back({"use of " + excerpt(href),
                                        layer_text_.of(around.names.planLayer()),
                                        {},
@@ -578,7 +578,7 @@ class SvgReader {
         for (const auto& clip : around.clips) shown = clipped(std::move(shown), *clip);
         for (PlanShape& part : shown) {
             if (around.unread != nullptr) {
-                spend(kUnreadElement);
+                spend(kUnreadElementWork);
                 drawing_.unread.push_back(
                     {around.unread, part.layer, {}, part.path.line, {}, bounds(part.path.points)});
             }

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "base/error.h"
-#include "extensions/ros/goal_status.h"
+#include "extensions/ros/navigate_action.h"
 #include "sense/formats/cdr.h"
 
 namespace ispace::ros {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "base/json_writer.h"
+#include "extensions/ros/navigate_action.h"
 #include "extensions/ros/ros_dialogue.h"
 #include "extensions/ros/ros_parameters.h"
 
@@ -181,12 +182,12 @@ void writeDeletedParameter(const Question& question, JsonWriter& out) {
 
 /// A robot that takes goals has the action of Nav2.
 void writeActionServers(const Question& question, JsonWriter& out) {
-    constexpr std::string_view kGoal = "/goal_pose";
     Texts names;
     for (const auto& [number, entry] : question.feed.entries())
         if (const std::string& topic = entry.channel.topic;
-            topic.ends_with(kGoal) && entry.channel.isInput())
-            names.push_back(topic.substr(0, topic.size() - kGoal.size()) + "/navigate_to_pose");
+            topic.ends_with(kGoalTopic) && entry.channel.isInput())
+            names.push_back(topic.substr(0, topic.size() - kGoalTopic.size()) +
+                            std::string(kNavigate));
     out.key("action_servers").value(names);
 }
 

@@ -15,7 +15,7 @@
 #include "base/error.h"
 #include "base/json_writer.h"
 #include "base/message.h"
-#include "extensions/ros/goal_status.h"
+#include "extensions/ros/navigate_action.h"
 #include "extensions/ros/ros_api.h"
 #include "extensions/ros/ros_parameters.h"
 #include "extensions/ros/ros_text.h"
@@ -434,9 +434,9 @@ void RosbridgeDialogue::cancelGoal(const Json& request) {
 
 /// Cancels the goals of the action that a service of ROS 2 names. \returns false for other services
 bool RosbridgeDialogue::cancelAll(const std::string& service) {
-    constexpr std::string_view kCancel = "/navigate_to_pose/_action/cancel_goal";
-    if (!service.ends_with(kCancel)) return false;
-    const std::string robot_topics = service.substr(0, service.size() - kCancel.size());
+    const std::string cancel = std::string(kNavigate) + "/_action/cancel_goal";
+    if (!service.ends_with(cancel)) return false;
+    const std::string robot_topics = service.substr(0, service.size() - cancel.size());
     if (input(robot_topics + std::string(kGoalTopic), RosType::PoseStamped) == nullptr)
         return false;
     std::vector<std::string> robots;

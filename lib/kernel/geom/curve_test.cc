@@ -9,7 +9,6 @@
 
 #include "geom/predicates.h"
 #include "support/test_curves.h"
-#include "support/test_overlay.h"
 
 namespace ispace {
 
@@ -25,6 +24,12 @@ Point2 onCircle(Point2 center, double radius, double degrees) {
 CurveEdge arc(Point2 center, double radius, double from, double to) {
     return {onCircle(center, radius, from), onCircle(center, radius, to),
             to > from ? radius : -radius, center};
+}
+
+/// A disc in unequal parts, with extremes within them.
+Curve unevenDisc(Point2 center, double radius) {
+    return {arc(center, radius, 0, 90), arc(center, radius, 90, 240),
+            arc(center, radius, 240, 360)};
 }
 
 TEST(Curve, StraightCurvesAreWhatTheirPolygonsAre) {
@@ -50,8 +55,8 @@ TEST(Curve, RegionsKeepTheirHoles) {
 
 TEST(Curve, DiscsSectorsAndLenses) {
     const Point2 center{3, -2};
-    EXPECT_NEAR(signedArea(disc(center, 2)), 4 * pi, 1e-13);
-    EXPECT_NEAR(perimeter(disc(center, 2)), 4 * pi, 1e-13);
+    EXPECT_NEAR(signedArea(unevenDisc(center, 2)), 4 * pi, 1e-13);
+    EXPECT_NEAR(perimeter(unevenDisc(center, 2)), 4 * pi, 1e-13);
 
     const CurveEdge third = arc(center, 2, 10, 130);
     const Curve sector{{center, third.from}, third, {third.to, center}};
@@ -88,7 +93,7 @@ TEST(Curve, ShallowArcsKeepTheirDigits) {
 }
 
 TEST(Curve, BoundsHoldTheArcs) {
-    const Box2 box = bounds(disc({3, -2}, 2));
+    const Box2 box = bounds(unevenDisc({3, -2}, 2));
     EXPECT_NEAR(box.low.x, 1, 1e-12);
     EXPECT_NEAR(box.low.y, -4, 1e-12);
     EXPECT_NEAR(box.high.x, 5, 1e-12);
@@ -141,7 +146,7 @@ TEST(Curve, ChordsKeepToTheirArcs) {
 }
 
 TEST(Curve, ChordsOfDiscsHaveNoDoubledVertices) {
-    const Polygon polygon = chords(disc({0, 0}, 1), 1e-4);
+    const Polygon polygon = chords(unevenDisc({0, 0}, 1), 1e-4);
     forEachEdge(polygon, [](const Segment2& edge) { EXPECT_GT(distance(edge.a, edge.b), 1e-3); });
     EXPECT_TRUE(isStrictlyConvex(polygon));
 }

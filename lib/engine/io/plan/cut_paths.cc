@@ -24,7 +24,7 @@ namespace ispace {
 namespace {
 
 // Edges cross their neighbours, and some of other solids; uniting more of them takes work.
-constexpr std::size_t kFreeMeetings = 8, kUnitsPerMeeting = 16;
+constexpr std::size_t kFreeCutCrossings = 8, kUnitsPerCutCrossing = 16;
 
 /// Unites solids no wider than a wall that meet at edges. Keeps wider ones, and a solid inside
 /// another.
@@ -75,7 +75,8 @@ class SolidUnion {
             for (const std::size_t k : search.near(bounds(edges[i]), 0)) {
                 if (k >= i) break;
                 if (!intersects(edges[i], edges[k])) continue;
-                if (++crossings > kFreeMeetings * edges.size() && !work_.take(kUnitsPerMeeting))
+                if (++crossings > kFreeCutCrossings * edges.size() &&
+                    !work_.take(kUnitsPerCutCrossing))
                     throw FormatError(Diagnostic{
                         "", 0, 0, "crossings of the cut's outlines make " + work_.excess()});
                 const std::size_t a = rootOf(solid_of[i]), b = rootOf(solid_of[k]);
@@ -106,8 +107,8 @@ std::vector<PlanPath> cutPaths(Slice slice, Budget& work) {
     const Box2 extent = boundsOf(slice.lines());
     std::vector<PlanPath> paths;
     // Ends of triangles are not corners: the plan's opening finder would use them.
-    SolidUnion joiner(std::move(slice.solids), std::max(extent.width(), extent.depth()), work);
-    for (Polygon& outline : simplified(joiner.join(), kMeshStraight))
+    SolidUnion solids(std::move(slice.solids), std::max(extent.width(), extent.depth()), work);
+    for (Polygon& outline : simplified(solids.join(), kMeshStraight))
         paths.push_back({std::move(outline), true, 0});
     for (const Segment2& sheet : slice.sheets) paths.push_back({{sheet.a, sheet.b}, false, 0});
     return paths;

@@ -24,7 +24,7 @@ namespace {
 constexpr double kFrameShare = 0.2;
 
 /// Square metres: smaller rooms in a frame are no house.
-constexpr double kLeastFramed = 12;
+constexpr double kLeastHouseInFrame = 12;
 
 /// A frame encloses this share of its bounds.
 constexpr double kFrameFilled = 0.85;
@@ -86,7 +86,7 @@ const Region* houseIn(const PlanWalls& plan, const RoomAttempt& taken, const Pla
     };
     const Region* house = nullptr;
     const auto look = [&](const Region& room, double area) {
-        if (&room != &outer && area >= kLeastFramed && is_island(room) &&
+        if (&room != &outer && area >= kLeastHouseInFrame && is_island(room) &&
             (house == nullptr || area > house->area()))
             house = &room;
     };
