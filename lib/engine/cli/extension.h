@@ -13,11 +13,11 @@
 // (offers.txt in each folder): a user that asks for one is told which extension has it.
 #pragma once
 
-#include <cstdint>
 #include <memory>
-#include <span>
 #include <string_view>
 #include <vector>
+
+#include "server/role_maker.h"
 
 namespace ispace {
 
@@ -33,10 +33,8 @@ class OptionGroup;
 class ProofGroup;
 class RecordGroup;
 class ReportGroup;
-class RoleService;
 struct BuildingRunOptions;
 struct Diagnostic;
-struct RunRoom;
 struct SiteScene;
 
 /// The options of an extension in one tool.
@@ -74,10 +72,8 @@ struct Extension {
     std::unique_ptr<ProofGroup> (*proof)() = nullptr;        ///< of `arrange --proof`
     std::unique_ptr<JudgeGroup> (*judge)() = nullptr;        ///< of runs of `simrun`
     std::unique_ptr<BridgeGroup> (*bridge)() = nullptr;      ///< another protocol of a run
-    /// Requests of the protocol, see server/client_role.h.
-    std::unique_ptr<RoleService> (*role)(std::span<const RunRoom> rooms,
-                                         std::uint64_t seed) = nullptr;
-    BuildingRuns buildings = {};  ///< of one extension at most
+    MakeRoleService role = nullptr;                          ///< requests of the protocol
+    BuildingRuns buildings = {};                             ///< of one extension at most
 };
 
 }  // namespace ispace

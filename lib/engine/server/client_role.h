@@ -13,7 +13,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,6 +20,7 @@
 #include <vector>
 
 #include "scene/room_state.h"
+#include "server/role_maker.h"
 #include "sim/simulation.h"
 #include "sim/worlds.h"
 
@@ -73,11 +73,5 @@ class RoleService {
     /// Returns the states of its things, by ids across the run, which STATE lists.
     [[nodiscard]] virtual std::vector<RoomState> states() const { return {}; }
 };
-
-/// Makes the service of an extension for a run; null if the scenes ask for none. \param rooms of
-/// the run; \param seed of the run \throws FormatError for records that
-/// contradict each other
-using MakeRoleService = std::unique_ptr<RoleService> (*)(std::span<const RunRoom> rooms,
-                                                         std::uint64_t seed);
 
 }  // namespace ispace
