@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# An image with the Debian packages of ispace alone:
+# An image with the packages ispace and ispace-short-names, and what they recommend:
 #
 #   docker build -t ispace .
 #   docker run --rm -v "$PWD:/work" -u "$(id -u):$(id -g)" ispace coverage room.env best.3dm -o map.png
@@ -30,7 +30,7 @@ FROM debian:bookworm-slim
 COPY --from=build /packages /packages
 RUN apt-get update \
     && apt-get install -y --no-install-recommends \
-        /packages/ispace_*.deb /packages/ispace-short-names_*.deb libopencv-imgcodecs406 \
+        /packages/ispace_*.deb /packages/ispace-short-names_*.deb libddsc0debian libmosquitto1 libopencv-imgcodecs406 \
     && rm -rf /var/lib/apt/lists/* /packages \
     && useradd --create-home --uid 1000 ispace
 USER ispace
