@@ -70,11 +70,14 @@ inline LineSource tableOf(const std::string& file) {
     return LineSource(TextFile(file, InputKind::Regular), "");
 }
 
-/// Parses a time of a run, in seconds: from 0 to 4e9, beyond the hundred years of the longest run.
+/// Seconds that a record may last: beyond the hundred years of the longest run, and few enough for
+/// 64 bits of nanoseconds.
+constexpr double kLongestRecord = 4e9;
+
+/// Parses a time of a run, in seconds: from 0 to kLongestRecord.
 inline std::optional<double> parseRunTime(std::string_view text) {
-    constexpr double kMaxTime = 4e9;
     const std::optional<double> time = parseDouble(text);
-    return time && *time >= 0 && *time <= kMaxTime ? time : std::nullopt;
+    return time && *time >= 0 && *time <= kLongestRecord ? time : std::nullopt;
 }
 
 /// Splits a line without quotes into its fields.

@@ -92,7 +92,8 @@ std::optional<RunInfo> recordedInfo(const std::string& folder) {
         throw FormatError({name, 2, 0,
                            "every is " + excerpt(text_of("every")) +
                                ", wanted the time between moments, from a step on"});
-    info.steps = std::llround(std::clamp(field("steps").value_or(0), 0.0, 1e15));
+    const double most = std::min(1e15, kLongestRecord / info.step);
+    info.steps = std::llround(std::clamp(field("steps").value_or(0), 0.0, most));
     // Too large for a double.
     info.seed = static_cast<std::uint64_t>(parseInteger(text_of("seed")).value_or(0));
     info.noise = field("noise").value_or(0) != 0;

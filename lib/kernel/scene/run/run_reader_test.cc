@@ -190,6 +190,9 @@ TEST(RunReader, ReadsFoldersPieceByPiece) {
     EXPECT_EQ(recordedInfo(folder.string()).value().step, 0.01);
     EXPECT_EQ(recordedInfo(folder.string()).value().seed, 9007199254740993U);
     EXPECT_TRUE(recordedInfo(folder.string()).value().noise);
+    // No longer than time can be counted.
+    writeAll(info, "dt,control_interval,steps\n0.005,0.1,1e15\n");
+    EXPECT_EQ(recordedInfo(folder.string()).value().steps, 800'000'000'000);
     for (const char* wrong : {"dt,control_interval,steps\n", "dt,x\n0,0\n", "a\n1\n"}) {
         writeAll((folder / "info.csv").string(), wrong);
         EXPECT_THROW(recordedInfo(folder.string()), FormatError) << wrong;
