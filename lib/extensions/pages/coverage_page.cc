@@ -124,9 +124,9 @@ PageSection summaryOf(const CoveragePageInput& input, std::span<const PageAdditi
         for (const PageText& text : added.sight) section.blocks.push_back(text);
     for (PageText& text : findingTexts(input.findings)) section.blocks.push_back(std::move(text));
     for (const JudgedRequirement& one : input.requirements)
-        section.blocks.push_back(PageText{
-            "Required are " + one.requirement + ": " + outcomeText(one.is_met, one.finding),
-            one.is_met ? Tone::Good : Tone::Bad});
+        section.blocks.push_back(
+            PageText{"Required: " + one.requirement + "; " + outcomeText(one.is_met, one.finding),
+                     one.is_met ? Tone::Good : Tone::Bad});
     for (const PageAdditions& added : additions)
         for (const PageText& text : added.judged) section.blocks.push_back(text);
     return section;
@@ -298,8 +298,8 @@ PageSection methodsSection(const CoverageReport& report) {
                         : "; they are counted on " + cellsText(report.grid) + "."));
     if (report.outside.value_or(0) >= kMinPiece)
         add("Sensors also see " + squareMetres(*report.outside) +
-            " beyond the limits of the room, through open doors, which is part of no other "
-            "figure.");
+            " beyond the limits of the room, through windows and open doors, which is part of no "
+            "other figure.");
     if (!report.exact_missing.empty())
         add("Some figures are counted on cells: " + printable(report.exact_missing) + ".");
     if (!report.densities.indoor.empty())
@@ -336,7 +336,7 @@ PageSection recordsOf(const CoveragePageInput& input) {
         "The layout, as a .3dm file holds it. Digest of the room: " + input.coverage.report.digest,
         Tone::Small});
     section.blocks.push_back(PageCode{layoutText(input.scene)});
-    section.blocks.push_back(PageText{"The command of this report:", Tone::Small});
+    section.blocks.push_back(PageText{kCommandCaption, Tone::Small});
     section.blocks.push_back(PageCode{input.command});
     return section;
 }

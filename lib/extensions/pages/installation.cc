@@ -15,7 +15,8 @@ namespace ispace::pages {
 
 namespace {
 
-std::string metresText(double value) { return formatFixed(value, 2); }
+/// To the millimetre, as mounts are measured.
+std::string metresText(double value) { return formatFixed(value, 3); }
 
 std::string degrees(Angle angle) {
     std::string text = formatFixed(angle.degrees(), 1);
@@ -75,7 +76,7 @@ std::string taskOf(const Scene& scene, const Coverage& coverage,
         for (const std::string& zone : zonesSeen(scene, coverage, view))
             text.append(text.empty() ? "" : ", ").append(zone);
         return text.append(text.empty() ? "" : "; ")
-            .append(metresText(floors[i].seen))
+            .append(formatFixed(floors[i].seen, 2))
             .append(" m2");
     }
     return "-";
@@ -123,7 +124,7 @@ PageTable installationTable(const Scene& scene, const Coverage& coverage,
         const bool is_laid = cable != cables.end() && !cable->panel.empty();
         TextRow& row = table.rows.back();
         row.insert(row.end() - 1,
-                   is_laid ? metresText(cable->length) + " to " + cable->panel : "-");
+                   is_laid ? formatFixed(cable->length, 2) + " to " + cable->panel : "-");
     }
     return table;
 }

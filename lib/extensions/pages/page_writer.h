@@ -10,6 +10,11 @@
 
 namespace ispace::pages {
 
+/// Above the command at the end of a page. The command is that of the histories of layouts and
+/// records, which has no threads, paths or texts of the page, so that pages have the same bytes.
+constexpr const char* kCommandCaption =
+    "The command of these figures; options without an effect on them are left out:";
+
 /// Returns the lines of a cover, such as {"Client", "ACME"}.
 std::vector<std::pair<std::string, std::string>> coverLines(const PageCover& cover);
 

@@ -8,6 +8,7 @@
 #include "base/number.h"
 #include "drawing/plan/plan.h"
 #include "env/environment.h"
+#include "env/zone.h"
 #include "extensions/pages/page_writer.h"
 #include "record/text.h"
 #include "scene/findings/findings.h"
@@ -47,26 +48,25 @@ PageSection findingsOf(const RoomPageInput& input) {
     return section;
 }
 
-/// Lists zones with their indoor area, and openings with their size.
+/// Lists zones with their area, and openings with their middle and width.
 PageSection partsOf(const Environment& environment) {
     PageSection section{"parts", "Zones, doors and windows", {}};
     PageTable zones{"zones", "lrrr", {"zone", "area", "x", "y"}, {}};
-    PageTable openings{"doors and windows", "llrr", {"opening", "kind", "x", "y"}, {}};
+    PageTable openings{"doors and windows", "llrrr", {"opening", "kind", "x", "y", "width"}, {}};
     for (const Element& element : environment.elements()) {
-        const std::string& keyword = element.record.keyword();
-        if (keyword == "zone") {
-            const Region zone{zoneOutline(element.record), {}};
-            const Point2 middle = bounds(zone.outline).center();
-            zones.rows.push_back({element.id, squareMetres(std::abs(signedArea(zone.outline))),
-                                  formatFixed(middle.x, 2), formatFixed(middle.y, 2)});
-        }
-        if ((keyword == "door" || keyword == "window") && !element.body.sheets.empty()) {
-            const Segment2& line = element.body.sheets.front().line;
-            const Point2 middle = line.a + 0.5 * (line.b - line.a);
-            openings.rows.push_back(
-                {element.id, keyword, formatFixed(middle.x, 2), formatFixed(middle.y, 2)});
-        }
+        if (element.record.keyword() != "zone") continue;
+        const Region zone{zoneOutline(element.record), {}};
+        const Point2 middle = bounds(zone.outline).center();
+        zones.rows.push_back({element.id, squareMetres(std::abs(signedArea(zone.outline))),
+                              formatFixed(middle.x, 2), formatFixed(middle.y, 2)});
     }
+    for (const char* keyword : {"door", "window"})
+        for (const Doorway& opening : doorwaysOf(environment, keyword)) {
+            const auto& [a, b] = opening.line;
+            const Point2 middle = a + 0.5 * (b - a);
+            openings.rows.push_back({opening.id, keyword, formatFixed(middle.x, 2),
+                                     formatFixed(middle.y, 2), formatFixed(distance(a, b), 2)});
+        }
     if (!zones.rows.empty()) section.blocks.push_back(std::move(zones));
     if (!openings.rows.empty()) section.blocks.push_back(std::move(openings));
     return section;
@@ -84,7 +84,7 @@ PageSection recordsOf(const RoomPageInput& input) {
                                           Tone::Small});
     else
         section.blocks.push_back(PageCode{std::move(text)});
-    section.blocks.push_back(PageText{"The command of this report:", Tone::Small});
+    section.blocks.push_back(PageText{kCommandCaption, Tone::Small});
     section.blocks.push_back(PageCode{input.command});
     return section;
 }

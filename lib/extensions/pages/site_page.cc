@@ -156,7 +156,7 @@ PageSection recordsOf(const SiteReport& input) {
             Tone::Small});
         section.blocks.push_back(PageCode{layoutText(*input.coverage.floors[i])});
     }
-    section.blocks.push_back(PageText{"The command of this report:", Tone::Small});
+    section.blocks.push_back(PageText{kCommandCaption, Tone::Small});
     section.blocks.push_back(PageCode{input.command});
     return section;
 }

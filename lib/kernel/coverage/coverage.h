@@ -139,7 +139,7 @@ struct CoverageReport {
     std::vector<SensorMetrics> sensors;     ///< by kind
     /// Eq. (4.6), m2: within the limits, indoor or not.
     Metric total_effective_area;
-    /// Area beyond the limits (through open doors) that any sensor sees, exact, m2.
+    /// Area beyond the limits (through windows and open doors) that any sensor sees, exact, m2.
     std::optional<double> outside;
     Metric overlap;   ///< area seen by two sensors or more, m2; within the limits, indoor or not
     Metric coverage;  ///< eq. (4.7), fraction of the indoor region

@@ -193,7 +193,7 @@ constexpr int kChords = 16;  // per quarter circle
 
 }  // namespace
 
-std::vector<Doorway> doorwaysOf(const Environment& environment) {
+std::vector<Doorway> doorwaysOf(const Environment& environment, std::string_view keyword) {
     const std::vector<Element>& elements = environment.elements();
     Diagnostics findings;  // stays empty: an environment has none
     WallPlan plan;
@@ -202,7 +202,7 @@ std::vector<Doorway> doorwaysOf(const Environment& environment) {
     std::vector<Doorway> doors;
     for (const Opening& opening : placeOpenings(elements, plan, findings)) {
         const Element& element = elements[opening.element];
-        if (element.record.keyword() != "door") continue;
+        if (element.record.keyword() != keyword) continue;
         const Segment2 wall = plan.lines[opening.line];
         const Vec2 along = 1 / distance(wall.a, wall.b) * (wall.b - wall.a);
         doors.push_back({element.id,

@@ -50,14 +50,14 @@ std::string_view withoutAllRooms(std::string_view text);
 /// matches
 std::vector<NamedZone> readZones(std::string_view text, const Environment& environment);
 
-/// A door's id, and the rectangle of its opening in the floor.
+/// The id of a door or window, and the rectangle of its opening in the floor.
 struct Doorway {
     std::string id;
     Segment2 line;
     double thickness = 0;
 };
-/// Returns the doors, in the order of their records.
-std::vector<Doorway> doorwaysOf(const Environment& environment);
+/// Returns the doors, or the openings of another keyword (`window`), in the order of their records.
+std::vector<Doorway> doorwaysOf(const Environment& environment, std::string_view keyword = "door");
 /// Begins a zone of doors.
 constexpr std::string_view kDoorPrefix = "door:";
 /// Metres of floor at doors, unless given.
