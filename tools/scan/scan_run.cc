@@ -503,6 +503,9 @@ std::int64_t takeReadings(const ScanCommand& command, const ScanToolOptions& opt
                                   .ids = [&options](const std::string& id) {
                                       return isSelected(id, options.select);
                                   }}));
+    if (options.noise && std::none_of(sensors.read.begin(), sensors.read.end(),
+                                      [](const Sensor& one) { return isNoisy(one.model); }))
+        warn(options.common, "scan", "--noise changes nothing: no sensor that is read has noise");
     const auto format =
         makeFormat(options.format, sensors, formatOptions(command, input, all.rooms));
     warn(options.common, "scan", format->warnings());
