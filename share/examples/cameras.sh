@@ -4,7 +4,10 @@
 # 90 % of it, and the number that recognises people there; each answer with its proof. Requires the tools in PATH;
 # writes its files to FOLDER (default: ispace-cameras).
 set -eu
-office=$(cd "$(dirname "$0")/../scenes" && pwd)/open-office.env
+# Beside the examples, or in a copy of them those of the installation.
+scenes=$(cd "$(dirname "$0")/../scenes" 2>/dev/null && pwd) ||
+    scenes=$(cd "$(dirname "$(command -v ispace)")/../share/ispace/scenes" && pwd)
+office=$scenes/open-office.env
 mkdir -p "${1:-ispace-cameras}"
 cd "${1:-ispace-cameras}"
 dome=dome-2.8-1080p,fov=110

@@ -3,7 +3,9 @@
 # demo.sh [FOLDER]: for two rooms of the thesis: the room, poses of three lasers, their readings and coverage, and a
 # robot in one of them. Requires the tools in PATH; writes its files to FOLDER (default: ispace-demo).
 set -eu
-scenes=$(cd "$(dirname "$0")/../scenes" && pwd)
+# Beside the examples, or in a copy of them those of the installation.
+scenes=$(cd "$(dirname "$0")/../scenes" 2>/dev/null && pwd) ||
+    scenes=$(cd "$(dirname "$(command -v ispace)")/../share/ispace/scenes" && pwd)
 mkdir -p "${1:-ispace-demo}"
 cd "${1:-ispace-demo}"
 

@@ -4,6 +4,7 @@
 // simrun, the include path alone changes:
 //
 //   g++ -std=c++11 -pthread -I lib/client -I lib/client/aria share/examples/aria/wander.cpp
+//   (installed: g++ -std=c++11 -pthread -I /usr/include/ispace_aria wander.cpp)
 //   simrun share/scenes/ispace.env share/scenes/ispace.3dm --listen 127.0.0.1:7001 &
 //   ISPACE_SIMRUN=127.0.0.1:7001 ./a.out
 #include "Aria.h"

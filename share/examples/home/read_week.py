@@ -40,5 +40,7 @@ for begin, sign, activity in seen:
         known[sign][activity] += 1
 judged = [known[sign].most_common(1)[0][0] == activity for begin, sign, activity in seen
           if begin > half and known[sign]]
+if not judged:
+    sys.exit("read_week.py: no action of the second half had its like in the first: record some days")
 print(f"{len(motions)} detections, {len(labels)} labels; {100 * sum(judged) / len(judged):.0f} % of "
       f"{len(judged)} actions recognised")

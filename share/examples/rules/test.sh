@@ -8,7 +8,11 @@ here=$(cd "$(dirname "$0")" && pwd)
 rm -f port
 simrun "$here/flat.env" "$here/flat.3dm" -q --clock step --dt 0.1 --script "$here/day.txt" --port-file port --record run \
     --expect "$here/rules.yaml" --expect-report rules.txt --junit junit.xml >/dev/null &
-until [ -s port ]; do sleep 0.1; done
+# Ends with simrun's status if that ends before it listens.
+until [ -s port ]; do
+    kill -0 $! 2>/dev/null || wait $!
+    sleep 0.1
+done
 "$here/controller.py" "127.0.0.1:$(cat port)" "$@"
 status=0
 wait $! || status=$?
