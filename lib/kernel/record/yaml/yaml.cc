@@ -119,7 +119,12 @@ YamlScene YamlReader::read(const YamlNode& node) {
 
 void YamlReader::readTop(const YamlNode& top, Items& items) {
     values_.visit(top);
-    readItems(top, spotOf(top), items);
+    if (top.kind == Kind::Scalar)
+        values_.unexpected(top, spotOf(top),
+                           "a list or map of records (what begins neither with #env 1 nor with "
+                           "#3dm 1 is read as YAML)");
+    else
+        readItems(top, spotOf(top), items);
     resolveParts();
 }
 
