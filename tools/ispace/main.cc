@@ -157,7 +157,9 @@ const Tool* begin(std::vector<std::string>& words) {
         throw TextRequested{"ispace " + std::string(version()) +
                             "\nLicence GPL-3.0-or-later; there is no warranty.\n"};
     const std::string what = first.starts_with('-') ? "unknown option " : "unknown tool ";
-    throw UsageError(what + excerpt(first) + didYouMean(first, known) + " (see ispace --help)");
+    const std::string meant =
+        first == "sweep" ? ": ispace-sweep is a program of its own" : didYouMean(first, known);
+    throw UsageError(what + excerpt(first) + meant + " (see ispace --help)");
 }
 
 }  // namespace

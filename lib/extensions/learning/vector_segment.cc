@@ -100,15 +100,15 @@ VectorSegment::VectorSegment(const std::string& name, const LearningSetting& set
     const std::string head = "ispace-vector 1\n" + description_ + '\n';
     if (head.size() > SegmentPlan::kHead)
         throw std::logic_error("the head of a segment is too long");
-    const auto fail = [&name](const char* what, int error) {
-        throw std::system_error(error, std::generic_category(), what + (" /dev/shm/" + name));
+    const auto fail = [&name](int error) {
+        throw std::system_error(error, std::generic_category(), "/dev/shm/" + name);
     };
     const int file =
         shm_open(name_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
     if (file < 0 && errno == EEXIST)
         throw UsageError("--shm: /dev/shm/" + name +
                          " is there already: another run uses it, or one that was killed left it");
-    if (file < 0) fail("cannot create", errno);
+    if (file < 0) fail(errno);
     size_ = plan.size();
     // Reserved now: a write to memory that is not there would end the process later.
     const int error = posix_fallocate(file, 0, static_cast<off_t>(size_));
@@ -118,7 +118,7 @@ VectorSegment::VectorSegment(const std::string& name, const LearningSetting& set
     close(file);
     if (memory == MAP_FAILED) {
         shm_unlink(name_.c_str());
-        fail("cannot reserve", error != 0 ? error : map_error);
+        fail(error != 0 ? error : map_error);
     }
     memory_ = static_cast<char*>(memory);
     plan.bind(memory_);

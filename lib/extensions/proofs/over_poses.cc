@@ -45,7 +45,14 @@ double heightOf(const ArrangeOptions& options) {
 std::vector<Region> floorAt(const Scene& scene, double height) {
     const std::shared_ptr<const Level> level = scene.environment.level(height);
     std::vector<Region> floor = level->freeFloor();
-    if (const std::string why = whyNotOpaque(*level, floor); !why.empty()) refusePoses(why);
+    if (std::string why = whyNotOpaque(*level, floor); !why.empty()) {
+        const Slice& slice = level->slice();
+        if (!slice.rounds.empty()) {
+            const std::size_t owner = slice.solid_owners[slice.rounds.front().solid];
+            why += " (" + scene.environment.elements()[owner].id + ')';
+        }
+        refusePoses(why);
+    }
     return floor;
 }
 

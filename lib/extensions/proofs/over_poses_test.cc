@@ -90,7 +90,8 @@ TEST(OverPoses, RefusesRoomsAndSensorsThatAreNoGallery) {
               std::string::npos);
     EXPECT_NE(refusalOf(room, "laser,range=99,fov=180").find("see all around"), std::string::npos);
     EXPECT_NE(refusalOf(room, "camera").find("see all around"), std::string::npos);
-    EXPECT_NE(refusalOf(room + "cylinder at=0,0 size=1,1,1\n").find("round bodies"),
+    EXPECT_NE(refusalOf(room + "cylinder id=pillar at=0,0 size=1,1,1\n")
+                  .find("round bodies stand at the height of the lasers (pillar)"),
               std::string::npos);
     EXPECT_NE(refusalOf(room + "wall from=0,0 to=1,0 thickness=0\n").find("without thickness"),
               std::string::npos);
