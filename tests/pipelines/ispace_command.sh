@@ -5,8 +5,8 @@
 
 for tool in $tools; do
     [ "$(ispace "$tool" --version)" = "$("$tool" --version)" ] || fail "ispace $tool is another tool"
-    # The summary is that of the manual page.
-    summary=$(sed -n "s/^$tool \\\\- //p" "$binary_dir/share/man/man1/$tool.1")
+    # The summary is that of the manual page, which names ispace, too, for apropos.
+    summary=$(sed -n "s/^$tool \\\\- \(.*\) (ispace)$/\1/p" "$binary_dir/share/man/man1/$tool.1")
     ispace --help | has -x "  $tool *$summary" || fail "ispace --help says otherwise of $tool than: $summary"
 done
 [ "$(ispace --help | sed -n '/^Tools:/,/^$/p' | grep -c '^  ')" -eq "$(wc -w <<<"$tools")" ] || fail "$(ispace --help)"
