@@ -4,14 +4,17 @@
 # expectations, and the layout must have seen enough of it. Writes for the server: junit.xml (the verdicts), ways.png
 # and seen.png (pictures), and the record. Exit status 3: an expectation failed. Requires the tools in PATH.
 set -eu
-share=$(cd "$(dirname "$0")/.." && pwd)
+examples=$(cd "$(dirname "$0")" && pwd)
+# Beside the examples, or in a copy of them those of the installation.
+scenes=$(cd "$examples/../scenes" 2>/dev/null && pwd) ||
+    scenes=$(cd "$(dirname "$(command -v ispace)")/../share/ispace/scenes" && pwd)
 mkdir -p "${1:-ispace-ci}"
 cd "${1:-ispace-ci}"
-room=$share/scenes/ispace.env
-layout=$share/scenes/ispace.3dm
+room=$scenes/ispace.env
+layout=$scenes/ispace.3dm
 
 status=0
-simrun "$room" "$layout" --clock fast --until 36 --script "$share/examples/drive.txt" --record run \
+simrun "$room" "$layout" --clock fast --until 36 --script "$examples/drive.txt" --record run \
     --expect 'no collision' \
     --expect 'r1 within 0.1 of 0.5,-1.9 before 36' \
     --expect 'r1 in zone zps always' \

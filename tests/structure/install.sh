@@ -48,6 +48,10 @@ envc "$data/pictures/room.jpg" --resolution 0.05 --info | has 'indoor area' || f
 envc "$source_dir/lib/extensions/ifc/golden/inputs/ifc/cabin-2x3-mm.ifc" --info | has 'indoor area' || fail "no IFC is read"
 # A scene with a mesh beside it.
 envc "$share/scenes/catalogue.env" -o catalogue.glb
+# A copy of the examples finds the scenes of the installation.
+mkdir copied
+cp "$share"/examples/*.sh "$share"/examples/drive.txt copied
+sh copied/ci.sh ci >log 2>&1 || fail "the copied example ci.sh: $(tail -n 3 log)"
 # ispace-sweep finds its modules, and the drawings of the experiments.
 if /usr/bin/python3 -c 'import yaml, matplotlib' 2>/dev/null; then
     cp -r "$share/examples/batch" batch
