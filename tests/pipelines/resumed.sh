@@ -39,7 +39,8 @@ killed_often() {
 }
 
 envc "$scenes/crowded.env" -o room.glb
-scanned=(scan "$data/room.env" "$data/room.3dm" --noise --frames 20000)
+sed 's/^laser .*/& sigma=0.01/' "$data/room.3dm" >noisy.3dm
+scanned=(scan "$data/room.env" noisy.3dm --noise --frames 20000)
 "${scanned[@]}" -o single
 killed_often scans.jsonl 60 "${scanned[@]}"
 "${scanned[@]}" --to csv --shard 2/3 -o single

@@ -5,7 +5,9 @@
 . "$(dirname "$0")/common.sh"
 
 room=$data/room.env
-layout=$data/room.3dm
+mkdir noisy
+layout=$PWD/noisy/room.3dm
+sed 's/^laser .*/& sigma=0.01/' "$data/room.3dm" >"$layout"
 awk 'BEGIN { for (i = 0; i < 13; ++i)
     printf "%.2f %.4f %.4f 0.15 0 0 %.6f %.6f\n", i / 10, cos(i) / 2, sin(i) / 2, sin(i / 7), cos(i / 7) }' >way.txt
 
