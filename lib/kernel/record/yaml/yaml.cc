@@ -119,12 +119,7 @@ YamlScene YamlReader::read(const YamlNode& node) {
 
 void YamlReader::readTop(const YamlNode& top, Items& items) {
     values_.visit(top);
-    if (top.kind == Kind::Scalar)
-        values_.unexpected(top, spotOf(top),
-                           "a list or map of records (what begins neither with #env 1 nor with "
-                           "#3dm 1 is read as YAML)");
-    else
-        readItems(top, spotOf(top), items);
+    readItems(top, spotOf(top), items);
     resolveParts();
 }
 

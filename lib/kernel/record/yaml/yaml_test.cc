@@ -165,8 +165,7 @@ TEST(ReadYaml, WantsRecords) {
               Texts{"a.yaml:1:1: error: nothing (null) is given, a list of records is wanted"});
     EXPECT_EQ(
         findings("just words"),
-        Texts{"a.yaml:1:1: error: `just words` is given, a list or map of records (what begins "
-              "neither with #env 1 nor with #3dm 1 is read as YAML) is wanted"});
+        Texts{"a.yaml:1:1: error: `just words` is given, a list or map of records is wanted"});
     const Texts none{"a.yaml: error: no records found, wanted a list or map of records"};
     for (const char* text : {"", "\n", "# x\n", "---\n", "~"}) EXPECT_EQ(findings(text), none);
     const std::string more = "the YAML document has ended, but more text follows";
