@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# An image with the packages ispace and ispace-short-names, and what they recommend:
+# An image with the packages ispace and ispace-short-names, and the libraries that they recommend:
 #
 #   docker build -t ispace .
 #   docker run --rm -v "$PWD:/work" -u "$(id -u):$(id -g)" ispace coverage room.env best.3dm -o map.png

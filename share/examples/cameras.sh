@@ -4,9 +4,11 @@
 # 90 % of it, and the number that recognises people there; each answer with its proof. Requires the tools in PATH;
 # writes its files to FOLDER (default: ispace-cameras).
 set -eu
+unset CDPATH
+examples=$(cd "$(dirname "$0")" && pwd)
 # Beside the examples, or in a copy of them those of the installation.
-scenes=$(cd "$(dirname "$0")/../scenes" 2>/dev/null && pwd) ||
-    scenes=$(cd "$(dirname "$(command -v ispace)")/../share/ispace/scenes" && pwd)
+scenes=$examples/../scenes
+[ -e "$scenes/ispace.env" ] || scenes=$(dirname "$(readlink -f "$(command -v ispace)")")/../share/ispace/scenes
 office=$scenes/open-office.env
 mkdir -p "${1:-ispace-cameras}"
 cd "${1:-ispace-cameras}"

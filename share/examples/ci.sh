@@ -4,10 +4,11 @@
 # expectations, and the layout must have seen enough of it. Writes for the server: junit.xml (the verdicts), ways.png
 # and seen.png (pictures), and the record. Exit status 3: an expectation failed. Requires the tools in PATH.
 set -eu
+unset CDPATH
 examples=$(cd "$(dirname "$0")" && pwd)
 # Beside the examples, or in a copy of them those of the installation.
-scenes=$(cd "$examples/../scenes" 2>/dev/null && pwd) ||
-    scenes=$(cd "$(dirname "$(command -v ispace)")/../share/ispace/scenes" && pwd)
+scenes=$examples/../scenes
+[ -e "$scenes/ispace.env" ] || scenes=$(dirname "$(readlink -f "$(command -v ispace)")")/../share/ispace/scenes
 mkdir -p "${1:-ispace-ci}"
 cd "${1:-ispace-ci}"
 room=$scenes/ispace.env

@@ -3,9 +3,11 @@
 # demo.sh [FOLDER]: for two rooms of the thesis: the room, poses of three lasers, their readings and coverage, and a
 # robot in one of them. Requires the tools in PATH; writes its files to FOLDER (default: ispace-demo).
 set -eu
+unset CDPATH
+examples=$(cd "$(dirname "$0")" && pwd)
 # Beside the examples, or in a copy of them those of the installation.
-scenes=$(cd "$(dirname "$0")/../scenes" 2>/dev/null && pwd) ||
-    scenes=$(cd "$(dirname "$(command -v ispace)")/../share/ispace/scenes" && pwd)
+scenes=$examples/../scenes
+[ -e "$scenes/ispace.env" ] || scenes=$(dirname "$(readlink -f "$(command -v ispace)")")/../share/ispace/scenes
 mkdir -p "${1:-ispace-demo}"
 cd "${1:-ispace-demo}"
 
@@ -27,7 +29,7 @@ run coverage crowded.glb crowded.3dm -o crowded.png
 
 # A robot drives around the barriers in the Intelligent Space; two lasers watch it, one is on it.
 run simrun ispace.glb "$scenes/ispace.3dm" --clock fast --until 36 \
-    --script "$(dirname "$scenes")/examples/drive.txt" --record drive
+    --script "$examples/drive.txt" --record drive
 
 echo
 result=$(sed -n 's/^result.*coverage=\([^ ]*\).*/\1/p' crowded.3dm)
