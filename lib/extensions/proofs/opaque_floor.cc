@@ -109,9 +109,12 @@ bool runsWithin(const Segment2& line, const std::vector<Region>& floor, const Li
 
 }  // namespace
 
-std::string whyNotOpaque(const Level& level, const std::vector<Region>& floor) {
+std::string whyNotOpaque(const Level& level, const std::vector<Region>& floor,
+                         const std::vector<Element>& elements) {
     const Slice& slice = level.slice();
-    if (!slice.rounds.empty()) return "round bodies stand at the height of the lasers";
+    if (!slice.rounds.empty())
+        return "round bodies stand at the height of the lasers (" +
+               elements[slice.solid_owners[slice.rounds.front().solid]].id + ")";
     std::vector<Segment2> edges;
     for (const Region& region : floor)
         region.forEachEdge([&](const Segment2& edge) {

@@ -15,6 +15,8 @@ namespace ispace::proofs {
 /// Wrong are round bodies, whose edges are arcs; sheets inside the floor, also in part; and edges
 /// without a wall behind them, as windows and walls below the level leave. One such stretch alone
 /// is allowed: a line of sight that leaves through it does not come back. O(n log n)
-std::string whyNotOpaque(const Level& level, const std::vector<Region>& floor);
+/// \param elements of the environment, whose ids it names
+std::string whyNotOpaque(const Level& level, const std::vector<Region>& floor,
+                         const std::vector<Element>& elements);
 
 }  // namespace ispace::proofs

@@ -45,14 +45,8 @@ double heightOf(const ArrangeOptions& options) {
 std::vector<Region> floorAt(const Scene& scene, double height) {
     const std::shared_ptr<const Level> level = scene.environment.level(height);
     std::vector<Region> floor = level->freeFloor();
-    if (std::string why = whyNotOpaque(*level, floor); !why.empty()) {
-        const Slice& slice = level->slice();
-        if (!slice.rounds.empty()) {
-            const std::size_t owner = slice.solid_owners[slice.rounds.front().solid];
-            why += " (" + scene.environment.elements()[owner].id + ')';
-        }
-        refusePoses(why);
-    }
+    const std::string why = whyNotOpaque(*level, floor, scene.environment.elements());
+    if (!why.empty()) refusePoses(why);
     return floor;
 }
 
