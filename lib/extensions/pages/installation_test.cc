@@ -144,8 +144,8 @@ void findAgain(const std::string& room, const std::string& layout, std::size_t c
         const Point2 found{(a.offset * b.normal.y - b.offset * a.normal.y) / area,
                            (a.normal.x * b.offset - b.normal.x * a.offset) / area};
         const Point2 planned = scene.sensors[i].pose.position.onFloor();
-        EXPECT_LT(distance(found, planned), 0.04) << row[0] << " at " << planned.x << ' '
-                                                  << planned.y << ": " << row[8] << "; " << row[9];
+        EXPECT_LT(distance(found, planned), 0.004) << row[0] << " at " << planned.x << ' '
+                                                   << planned.y << ": " << row[8] << "; " << row[9];
     }
 }
 

@@ -56,7 +56,7 @@ LegendBlock metricsBlock(const CoverageReport& report, bool terse) {
     if (!terse) add_area("Free floor", report.free_area);
     add("Effective area", report.total_effective_area, area);
     if (!terse && report.outside.value_or(0) >= kMinPiece)
-        add_area("Beyond the limits", *report.outside);
+        add_area("Outside limits", *report.outside);
     if (report.redundancy.size() > 2 && !terse) add("Overlap", report.overlap, area);
     if (!terse)
         block.items.push_back(
