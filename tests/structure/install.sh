@@ -51,7 +51,9 @@ envc "$share/scenes/catalogue.env" -o catalogue.glb
 # A copy of the examples finds the scenes of the installation.
 mkdir copied
 cp "$share"/examples/*.sh "$share"/examples/drive.txt copied
-sh copied/ci.sh ci >log 2>&1 || fail "the copied example ci.sh: $(tail -n 3 log)"
+for example in demo ci cameras; do
+    sh "copied/$example.sh" "copy-of-$example" >log 2>&1 || fail "the copied example $example.sh: $(tail -n 3 log)"
+done
 # ispace-sweep finds its modules, and the drawings of the experiments.
 if /usr/bin/python3 -c 'import yaml, matplotlib' 2>/dev/null; then
     cp -r "$share/examples/batch" batch
