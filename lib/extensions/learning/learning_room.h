@@ -57,8 +57,9 @@ struct FloorCells {
     }
     [[nodiscard]] Point2 center(std::size_t cell) const {
         const auto wide = static_cast<std::size_t>(columns);
-        return {low.x + kSide * (static_cast<double>(cell % wide) + 0.5),
-                low.y + kSide * (static_cast<double>(cell / wide) + 0.5)};
+        const std::size_t column = cell % wide, row = cell / wide;
+        return {low.x + kSide * (static_cast<double>(column) + 0.5),
+                low.y + kSide * (static_cast<double>(row) + 0.5)};
     }
 };
 
