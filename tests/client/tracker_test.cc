@@ -38,6 +38,19 @@ TEST(JointTracker, WhoWalksOverALostTrackKeepsTheirOwn) {
     EXPECT_EQ(joint.tracks().size(), 1U);
 }
 
+// A laser sees the hind leg alone; the front leg appears a step ahead, outside the track's gate.
+TEST(JointTracker, LegsOfOneStepAreOnePerson) {
+    JointTracker joint;
+    double time = 0;
+    for (int k = 0; k < 10; ++k, time += 0.1) joint.update(time, {legsAt({0})});
+    joint.update(time, {legsAt({0, 0.55})});
+    for (int k = 1; k <= 10; ++k) {
+        const double x = 0.08 * k;
+        joint.update(time + 0.1 * k, {legsAt({x, x + 0.5})});
+        EXPECT_EQ(joint.tracks().size(), 1U) << "at " << x;
+    }
+}
+
 // A tentative track does not replace a confirmed one.
 TEST(JointTracker, OfDoublesTheSureOneStays) {
     Tracks tracks;

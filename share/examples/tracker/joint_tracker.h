@@ -41,6 +41,7 @@ class JointTracker {
     static constexpr double kGate = 9;        // standard deviations, squared
     static constexpr double kNoOwner = 30;    // more than any within the gate
     static constexpr double kApart = 0.45;    // m: least distance of two people
+    static constexpr double kReach = 0.6;     // m: from one foot of a walker to the other, at most
     static constexpr double kSame = 0.2;      // m: two tracks so near are of the same person
     static constexpr double kPatience = 1.5;  // s
     static constexpr int kSure = 4;           // scans
@@ -86,7 +87,8 @@ class JointTracker {
         track.update(place, clusters.size() == 2 ? kBothSigma : sigmaOf(kind), kind);
     }
 
-    /// Creates a track for each group of unassigned clusters.
+    /// Creates a track for each group of unassigned clusters, but not within a step of a track. A
+    /// track of which only the hind leg is seen lies there, and the front leg appears a step ahead.
     void greet(double time, const std::vector<Cluster>& strangers) {
         std::vector<bool> used(strangers.size(), false);
         for (std::size_t i = 0; i < strangers.size(); ++i) {
@@ -107,7 +109,7 @@ class JointTracker {
 
     bool isNearAnybody(const Vector2d& place) const {
         return std::any_of(tracks_.begin(), tracks_.end(), [&place](const Track& track) {
-            return (track.place() - place).norm() < kApart;
+            return (track.place() - place).norm() < kReach;
         });
     }
 
