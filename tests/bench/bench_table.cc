@@ -53,6 +53,16 @@ double ownSeconds() {
     return sum;
 }
 
+/// The row of a run, or its error. Since version 1.8 of the library an error is one way to skip a
+/// run.
+template <typename Run>
+const std::string& wordsOf(const Run& run) {
+    if constexpr (requires { run.skip_message; })
+        return static_cast<bool>(run.skipped) ? run.skip_message : run.report_label;
+    else
+        return run.error_occurred ? run.error_message : run.report_label;
+}
+
 }  // namespace
 
 Others::Others()
@@ -89,8 +99,7 @@ void TableReporter::ReportRuns(const std::vector<Run>& runs) {
         const std::string group = name.substr(0, name.find('/'));
         if (group != group_) std::printf("\n%s\n", headings_[group].c_str());
         group_ = group;
-        const std::string& words = run.error_occurred ? run.error_message : run.report_label;
-        std::printf("%s\n", words.c_str());
+        std::printf("%s\n", wordsOf(run).c_str());
     }
     std::fflush(stdout);
 }
