@@ -86,6 +86,12 @@ std::string leftCell(const std::string& words, std::size_t width) {
     return words + std::string(width - std::min(width, words.size()), ' ');
 }
 
+TableReporter::TableReporter(std::map<std::string, std::string> headings)
+    : headings_(std::move(headings)) {
+    for (const auto& [group, heading] : headings_)
+        benchmark::AddCustomContext("table " + group, heading);
+}
+
 bool TableReporter::ReportContext(const Context& context) {
     const double load = context.cpu_info.load_avg.empty() ? 0 : context.cpu_info.load_avg.front();
     std::printf("%d cores, load %.1f\n", context.cpu_info.num_cpus, load);

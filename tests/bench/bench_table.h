@@ -67,11 +67,11 @@ std::string cell(const std::string& words, std::size_t width);
 std::string leftCell(const std::string& words, std::size_t width);
 
 /// Prints the label of each benchmark as a line, and above those of a group (all names with the
-/// same beginning up to the first slash) its heading.
+/// same beginning up to the first slash) its heading. Results as JSON have the headings, too, as
+/// `table GROUP` of the context: tables.py makes CSV of both.
 class TableReporter : public benchmark::BenchmarkReporter {
   public:
-    explicit TableReporter(std::map<std::string, std::string> headings)
-        : headings_(std::move(headings)) {}
+    explicit TableReporter(std::map<std::string, std::string> headings);
     bool ReportContext(const Context& context) override;
     void ReportRuns(const std::vector<Run>& runs) override;
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# run.sh BUILD: runs every benchmark; the figures also go to BUILD/bench/*.json.
+# run.sh BUILD: runs every benchmark; the figures also go to BUILD/bench/*.json, and their tables to BUILD/bench/*.csv.
 set -euo pipefail
 build=$1
 mkdir -p "$build/bench"
@@ -13,6 +13,7 @@ for program in start planner days kernel plan load ray_rate sight_scan depth_rat
     "$build/tests/${program}_bench" --benchmark_out="$build/bench/$program.json" \
         --benchmark_out_format=json
 done
+python3 "$(dirname "$0")/tables.py" "$build/bench"
 
 /usr/bin/python3 "$(dirname "$0")/latency.py" "$build" --csv "$build/bench/latency.csv"
 
