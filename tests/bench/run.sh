@@ -7,11 +7,13 @@ mkdir -p "$build/bench"
 # For the scenes and poses that benchmarks make, and remove.
 TMPDIR=$(cd "$build/bench" && pwd)
 export TMPDIR
+rm -f "$build"/bench/*.json "$build"/bench/*.csv
+failed=
 for program in start planner days kernel plan load ray_rate sight_scan depth_rate render_rate scan_rate server_rate sim_rate vector visibility \
     union coverage set_cover gallery poses arrange; do
     [ -x "$build/tests/${program}_bench" ] || continue  # of an extension that is not built
     "$build/tests/${program}_bench" --benchmark_out="$build/bench/$program.json" \
-        --benchmark_out_format=json
+        --benchmark_out_format=json || failed+=" $program"
 done
 python3 "$(dirname "$0")/tables.py" "$build/bench"
 
@@ -26,3 +28,5 @@ if [ -d "$build/npm/node_modules/clipper2-wasm" ] && command -v node >/dev/null;
 else
     echo "bench: no unions by Clipper 2 here, it takes node and npm" >&2
 fi
+
+[ -z "$failed" ] || { echo "bench: these miss a goal or a check:$failed" >&2; exit 1; }
