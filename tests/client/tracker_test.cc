@@ -38,7 +38,7 @@ TEST(JointTracker, WhoWalksOverALostTrackKeepsTheirOwn) {
     EXPECT_EQ(joint.tracks().size(), 1U);
 }
 
-// A laser sees the hind leg alone; the front leg appears a step ahead, outside the track's gate.
+// A laser sees the rear leg alone; the front leg appears a step ahead, outside the track's gate.
 TEST(JointTracker, LegsOfOneStepAreOnePerson) {
     JointTracker joint;
     double time = 0;

@@ -40,8 +40,8 @@ class JointTracker {
     static constexpr double kRobotSigma = 0.06;
     static constexpr double kGate = 9;        // standard deviations, squared
     static constexpr double kNoOwner = 30;    // more than any within the gate
-    static constexpr double kApart = 0.45;    // m: least distance of two people
-    static constexpr double kReach = 0.6;     // m: from one foot of a walker to the other, at most
+    static constexpr double kApart = 0.45;    // m: clusters so near are of one stranger
+    static constexpr double kReach = 0.6;     // m: between the feet of a walker of up to 2.1 m
     static constexpr double kSame = 0.2;      // m: two tracks so near are of the same person
     static constexpr double kPatience = 1.5;  // s
     static constexpr int kSure = 4;           // scans
@@ -87,8 +87,10 @@ class JointTracker {
         track.update(place, clusters.size() == 2 ? kBothSigma : sigmaOf(kind), kind);
     }
 
-    /// Creates a track for each group of unassigned clusters, but not within a step of a track. A
-    /// track of which only the hind leg is seen lies there, and the front leg appears a step ahead.
+    /// Creates a track for each group of unassigned clusters, but not within a step of a track:
+    /// where only the rear leg is seen, the track lies there, and the front leg appears a step
+    /// ahead. The price: of two people who meet so near, unseen before, one is found when they
+    /// part.
     void greet(double time, const std::vector<Cluster>& strangers) {
         std::vector<bool> used(strangers.size(), false);
         for (std::size_t i = 0; i < strangers.size(); ++i) {
