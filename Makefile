@@ -35,7 +35,7 @@ help:
 	@echo "make bench       deps, build, benchmarks"
 	@echo "make fuzz        deps, build with Clang, fuzz each reader and protocol for FUZZ_SECONDS=$(FUZZ_SECONDS)"
 	@echo "make torture     deps, build, attack the tools for TORTURE_MINUTES=$(TORTURE_MINUTES) (TORTURE_OPTIONS: see run.py)"
-	@echo "make format      reformat the sources"
+	@echo "make format      reformat the sources with clang-format 14"
 	@echo "make lint        rates of words in comments and pages; clang-tidy on changed sources (all with BASE=)"
 	@echo "make install     build the tools and install them under prefix=$(prefix), honours DESTDIR"
 	@echo "make package     deps, build, Debian packages in $(BUILD)/package, judged by lintian"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A user without rights to install gets one message with the packages that are missing and the command for root, from
-# each target that needs them; with all packages there, none. What a release of Debian lacks is left out, but for builds.
+# each target that needs them; with all packages there, none. What a release of Debian lacks is left out, but for the group build.
 . "$(dirname "$0")/../pipelines/common.sh"
 
 command -v dpkg-query >/dev/null && command -v apt-get >/dev/null || skip "no Debian packages here"
@@ -38,10 +38,9 @@ sed -i '/ispace-is/d' "$copy/tree/packages.txt"
 as_user .ci/deps build check >out 2>err || fail "all is there: $(cat err)"
 [ ! -s out ] && [ ! -s err ] || fail "all is there: $(cat out err)"
 
-# Lists of packages are in place where they know Debian's smallest.
-if apt-cache show libc6 >/dev/null 2>&1; then
+if compgen -G '/var/lib/apt/lists/*_Packages*' >/dev/null; then
     printf '[check]\nispace-is-missing\n' >>"$copy/tree/packages.txt"
     as_user .ci/deps build check >out 2>err || fail "a package for tests that no release has: $(cat err)"
-    [ "$(cat out)" = "deps: this release has no ispace-is-missing; tests that take it are skipped" ] && [ ! -s err ] ||
+    [ "$(cat out)" = "deps: this release has no ispace-is-missing: going on without it" ] && [ ! -s err ] ||
         fail "a package for tests that no release has: $(cat out err)"
 fi
