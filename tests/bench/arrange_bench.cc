@@ -226,8 +226,8 @@ std::string figures(const Result& result) {
     const Arrangement& found = result.arrangement;
     return bench::cell(static_cast<double>(found.candidates), 0, 9) +
            bench::cell(percent(found.candidate_value), 9) + bench::cell(percent(found.bound), 9) +
-           bench::cell(percent(gapOf(found)), 8) + bench::cell(milliseconds(result.setup), 9) +
-           bench::cell(milliseconds(result.all - result.setup), 9) +
+           bench::cell(percent(gapOf(found)), 8) + bench::cell(milliseconds(result.setup), 10) +
+           bench::cell(milliseconds(result.all - result.setup), 10) +
            bench::cell(static_cast<double>(found.bytes) / 1e6, 1, 8) +
            (found.is_complete ? "" : "  given up");
 }
@@ -324,29 +324,38 @@ int main(int argc, char** argv) {
     for (const CameraRow& row : of_cameras)
         add("cameras/" + row.name, kRounds,
             [&office, &row](benchmark::State& state) { overhead(state, office, row); });
-    const std::string columns =
-        "candidates coverage    bound     gap set-up,ms search,ms      MB\n";
+    const std::string columns = bench::headOf({{"cand.", 9},
+                                               {"coverage", 9},
+                                               {"bound", 9},
+                                               {"gap", 8},
+                                               {"set-up,ms", 10},
+                                               {"search,ms", 10},
+                                               {"MB", 8}});
+    const std::string of_plans =
+        bench::headOf({{"plan", -22}, {"m2", 6}, {"k", 3}, {"fov", 5}}) + columns;
     bench::TableReporter table(
         {{"thesis",
-          "Tables 4.1 and 5.2 of the thesis on scenes like its own (not the same: those are lost)\n"
-          "                                 thesis        coverage    bound       ms"},
+          "Tables 4.1 and 5.2 of the thesis on scenes like its own (not the same: those are "
+          "lost)\n" +
+              bench::headOf({{"table", -13},
+                             {"parameters", -20},
+                             {"thesis", -14},
+                             {"coverage", 8},
+                             {"bound", 9},
+                             {"ms", 9}})},
          {"plans",
           "4 m lasers on candidates 0.25,0.25,16, to within 1 % of the bound or for 3 s; one "
           "thread, "
-          "processor time\n"
-          "plan                       m2  k  fov " +
-              columns},
+          "processor time\n" +
+              of_plans},
          {"many",
           "8 and 16 of them, to within 0.5 % of the bound or for 10 s; two threads, processor time "
-          "of both\n"
-          "plan                       m2  k  fov " +
-              columns},
-         {"cameras",
-          "Cameras in an open-plan office of 14 m x 9 m, proven or for 3 s\n"
-          "                             k " +
-              columns},
-         {"growth",
-          "3 lasers of 180 degrees in the third plan\ncandidates         cells " + columns}});
+          "of both\n" +
+              of_plans},
+         {"cameras", "Cameras in an open-plan office of 14 m x 9 m, proven or for 3 s\n" +
+                         bench::headOf({{"cameras", -28}, {"k", 3}}) + columns},
+         {"growth", "3 lasers of 180 degrees in the third plan\n" +
+                        bench::headOf({{"candidates", -16}, {"cells", 8}}) + columns}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }

@@ -53,6 +53,11 @@ double ownSeconds() {
     return sum;
 }
 
+std::string printed(std::string cells) {
+    std::erase(cells, kCellEnd);
+    return cells;
+}
+
 /// The row of a run, or its error. Since version 1.8 of the library an error is one way to skip a
 /// run.
 template <typename Run>
@@ -79,11 +84,20 @@ std::string cell(double number, int decimals, std::size_t width) {
 }
 
 std::string cell(const std::string& words, std::size_t width) {
-    return std::string(width - std::min(width, words.size()), ' ') + words;
+    return std::string(width - std::min(width, words.size()), ' ') + words + kCellEnd;
 }
 
 std::string leftCell(const std::string& words, std::size_t width) {
-    return words + std::string(width - std::min(width, words.size()), ' ');
+    return words + std::string(width - std::min(width, words.size()), ' ') + kCellEnd;
+}
+
+std::string headOf(std::initializer_list<Column> columns) {
+    std::string line;
+    for (const Column& column : columns) {
+        const auto width = static_cast<std::size_t>(std::abs(column.width));
+        line += column.width < 0 ? leftCell(column.name, width) : cell(column.name, width);
+    }
+    return line;
 }
 
 TableReporter::TableReporter(std::map<std::string, std::string> headings)
@@ -103,9 +117,9 @@ void TableReporter::ReportRuns(const std::vector<Run>& runs) {
         if (run.run_type == Run::RT_Aggregate) continue;
         const std::string name = run.benchmark_name();
         const std::string group = name.substr(0, name.find('/'));
-        if (group != group_) std::printf("\n%s\n", headings_[group].c_str());
+        if (group != group_) std::printf("\n%s\n", printed(headings_[group]).c_str());
         group_ = group;
-        std::printf("%s\n", wordsOf(run).c_str());
+        std::printf("%s\n", printed(wordsOf(run)).c_str());
     }
     std::fflush(stdout);
 }

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <span>
 #include <string>
@@ -61,14 +62,25 @@ void shareOut(int threads, std::size_t count, Run run) {
                       });
 }
 
+/// Ends a cell in the JSON of the results; it is not printed.
+constexpr char kCellEnd = '\t';
+
 /// A cell, right-aligned: a number with so many decimals, or words.
 std::string cell(double number, int decimals, std::size_t width);
 std::string cell(const std::string& words, std::size_t width);
 std::string leftCell(const std::string& words, std::size_t width);
 
+/// The head of a column and its width, negative if it is left-aligned.
+struct Column {
+    const char* name;
+    int width;
+};
+std::string headOf(std::initializer_list<Column> columns);
+
 /// Prints the label of each benchmark as a line, and above those of a group (all names with the
-/// same beginning up to the first slash) its heading. Results as JSON have the headings, too, as
-/// `table GROUP` of the context: tables.py makes CSV of both.
+/// same beginning up to the first slash) its heading, whose last line is made of cells as the label
+/// is. Results as JSON have the headings, too, as `table GROUP` of the context: tables.py makes CSV
+/// of both.
 class TableReporter : public benchmark::BenchmarkReporter {
   public:
     explicit TableReporter(std::map<std::string, std::string> headings);

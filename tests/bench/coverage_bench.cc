@@ -166,12 +166,26 @@ int main(int argc, char** argv) {
           "Whole runs with very many sensors, without a map: edges between what they see "
           "(millions),\n"
           "processor seconds with -j 1, those of a million edges, seconds of wall time with -j 1\n"
-          "and 2, and megabytes\n"
-          "                           edges      cpu  an edge    -j 1    -j 2      MB"},
+          "and 2, and megabytes\n" +
+              bench::headOf({{"crowded", -24},
+                             {"edges", 8},
+                             {"cpu", 9},
+                             {"an edge", 9},
+                             {"-j 1", 8},
+                             {"-j 2", 8},
+                             {"MB", 8}})},
          {"coverage", "Whole runs of coverage on 100 x 100 cells, " + std::string(kModel) +
-                          "; milliseconds\n"
-                          "                           lines   cells + exact    -j 1     cpu    -j 2"
-                          "     cpu  1000^2     map"}});
+                          "; milliseconds\n" +
+                          bench::headOf({{"coverage", -24},
+                                         {"lines", 8},
+                                         {"cells", 8},
+                                         {"+ exact", 8},
+                                         {"-j 1", 8},
+                                         {"cpu", 8},
+                                         {"-j 2", 8},
+                                         {"cpu", 8},
+                                         {"1000^2", 8},
+                                         {"map", 8}})}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }

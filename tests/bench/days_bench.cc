@@ -353,9 +353,13 @@ int main(int argc, char** argv) {
             ->UseManualTime();
     bench::TableReporter table(
         {{"days", "Days of work, seconds of processor time on one core; the quickest of " +
-                      std::to_string(kRounds) +
-                      "\n                                    equivalent                      work"
-                      "   equal   ratio    goal"}});
+                      std::to_string(kRounds) + "\n" +
+                      bench::headOf({{"day", -36},
+                                     {"equivalent", -28},
+                                     {"work", 8},
+                                     {"equal", 8},
+                                     {"ratio", 8},
+                                     {"goal", 8}})}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }

@@ -104,8 +104,8 @@ int main(int argc, char** argv) {
     bench::TableReporter table(
         {{"planner",
           "Waits of a planner, the quickest of " + std::to_string(kRuns) +
-              "; seconds, and processor time over that of the first row\n"
-              "                                                wall  processor   ratio"}});
+              "; seconds, and processor time over that of the first row\n" +
+              bench::headOf({{"command", -44}, {"wall", 8}, {"processor", 11}, {"ratio", 8}})}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }

@@ -193,10 +193,10 @@ void measure(benchmark::State& state, const Case& test, const Use& use, double p
 
 std::string heading(const std::string& what, const std::string& primitives) {
     return what + "\n" + bench::leftCell("scene", 12) + bench::cell(primitives, 8) + "  " +
-           bench::leftCell("format", 13) + bench::cell("-j 1", 8) + bench::cell("-j 2", 8) +
-           bench::cell("times", 6) + bench::cell("a core", 8) + bench::cell("bytes", 10) +
-           bench::cell("MB/s", 6) + bench::cell("start", 7) + bench::cell("memory", 8) +
-           bench::cell("others", 8);
+           bench::leftCell("format", 7) + bench::leftCell("noise", 6) + bench::cell("-j 1", 8) +
+           bench::cell("-j 2", 8) + bench::cell("times", 6) + bench::cell("a core", 8) +
+           bench::cell("bytes", 10) + bench::cell("MB/s", 6) + bench::cell("start", 7) +
+           bench::cell("memory", 8) + bench::cell("others", 8);
 }
 
 void add(const std::string& group, const Case& test, const Use& use, double parts, double unit,

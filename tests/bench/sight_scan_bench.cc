@@ -312,8 +312,18 @@ int main(int argc, char** argv) {
         {{"scan",
           "Microseconds a scan: beam kernel, region sampled, its query alone; from a moving "
           "sensor in packets and ray by ray; region / kernel\n" +
-              first + "  laser      poses   kernel  region   query packets  single  ratio"},
-         {"set-up", "Set-up, ms and MB\n" + first + "  kernel  region  kernel  region"}});
+              first + "  " +
+              bench::headOf({{"laser", -11},
+                             {"poses", -6},
+                             {"kernel", 8},
+                             {"region", 8},
+                             {"query", 8},
+                             {"packets", 8},
+                             {"single", 8},
+                             {"ratio", 7}})},
+         {"set-up",
+          "Set-up, ms and MB\n" + first +
+              bench::headOf({{"kernel", 8}, {"region", 8}, {"kernel", 8}, {"region", 8}})}});
     benchmark::RunSpecifiedBenchmarks(&reporter);
     return 0;
 }

@@ -121,12 +121,12 @@ int main(int argc, char** argv) {
         ->Iterations(1)
         ->UseManualTime();
     bench::TableReporter table(
-        {{"start", "Starts on one core, medians of " + std::to_string(kRuns) +
-                       "; milliseconds\n"
-                       "                                        wall  processor  /bin/true"},
+        {{"start",
+          "Starts on one core, medians of " + std::to_string(kRuns) + "; milliseconds\n" +
+              bench::headOf({{"command", -36}, {"wall", 8}, {"processor", 11}, {"/bin/true", 11}})},
          {"batch",
-          "Small rooms by coverage; milliseconds a room\n"
-          "                                     --batch  processes      ratio"}});
+          "Small rooms by coverage; milliseconds a room\n" +
+              bench::headOf({{"rooms", -36}, {"--batch", 8}, {"processes", 11}, {"ratio", 11}})}});
     benchmark::RunSpecifiedBenchmarks(&table);
     return 0;
 }
