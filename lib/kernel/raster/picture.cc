@@ -21,6 +21,9 @@ namespace ispace {
 
 namespace {
 
+/// Debian's package of the library that decodes and writes JPEG, of the release of this build.
+constexpr const char* kCodecs = ISPACE_OPENCV_PACKAGE;
+
 /// Width and height from a header.
 using Size = std::pair<std::int64_t, std::int64_t>;
 
@@ -186,18 +189,18 @@ const PictureFormat* formatOf(std::string_view bytes) {
 DecodedPicture decodedApart(std::string_view bytes, const std::string& name,
                             const std::string& format, std::size_t pixels, ConfinedReader& reader) {
     const OpenFile file = fileInMemory(bytes);
-    const std::string answer = reader.read(
-        {.name = name,
-         .program = "read-picture",
-         .file = file.fd(),
-         .bytes = bytes.size(),
-         .limits = [pixels](std::size_t /*bytes*/) { return pictureLimits(pixels); },
-         .kind = format + " picture",
-         .reader = "OpenCV",
-         .subject = format + " pictures are",
-         .hint = "; OpenCV is needed (Debian: libopencv-imgcodecs406), or convert it, for example "
-                 "with `convert FILE map.png`",
-         .problem = "bad " + format + " picture: "});
+    const std::string answer =
+        reader.read({.name = name,
+                     .program = "read-picture",
+                     .file = file.fd(),
+                     .bytes = bytes.size(),
+                     .limits = [pixels](std::size_t /*bytes*/) { return pictureLimits(pixels); },
+                     .kind = format + " picture",
+                     .reader = "OpenCV",
+                     .subject = format + " pictures are",
+                     .hint = "; OpenCV is needed (Debian: " + std::string(kCodecs) +
+                             "), or convert it, for example with `convert FILE map.png`",
+                     .problem = "bad " + format + " picture: "});
     PackedHead head{};
     if (answer.size() >= sizeof head) std::memcpy(head.data(), answer.data(), sizeof head);
     const auto [width, height, channels] = head;
@@ -277,10 +280,10 @@ std::string jpegOfRgb(int columns, int rows, std::span<const std::uint8_t> sampl
     // Opened anew each time: the loader counts references.
     void* const encode = moduleSymbol("pictures.so", kJpegEncoder, error);
     if (encode == nullptr)
-        throw FormatError(Diagnostic{
-            "", 0, 0,
-            "a JPEG picture needs OpenCV (Debian: libopencv-imgcodecs406): " + printable(error) +
-                "; PNG needs nothing else"});
+        throw FormatError(
+            Diagnostic{"", 0, 0,
+                       "a JPEG picture needs OpenCV (Debian: " + std::string(kCodecs) +
+                           "): " + printable(error) + "; PNG needs nothing else"});
     (*reinterpret_cast<JpegEncoder*>(encode))(picture);
     if (!picture.error.empty()) throw FormatError(Diagnostic{"", 0, 0, picture.error});
     return {picture.bytes.begin(), picture.bytes.end()};
