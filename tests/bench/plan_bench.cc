@@ -19,6 +19,7 @@
 #include "base/number.h"
 #include "bench_scenes.h"
 #include "extensions/cad/cad.h"
+#include "extensions/meshes/meshes.h"
 #include "io/glb/glb_read.h"
 #include "scene/placement_schemas.h"
 
@@ -157,6 +158,7 @@ int main(int argc, char** argv) {
     }
     std::string folder = (std::filesystem::temp_directory_path() / "plan-bench-XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) return 1;
+    meshes::addMeshes();
     writeAll(folder + "/globe.stl", stlOf(*bench::bumpyGlobe(501, 1000)));
     writeAll(folder + "/room.env", "#env 1\nispace size=8,6\nmesh file=globe.stl\n");
     registerFile("mesh-1000000", folder + "/room.env", 48);
