@@ -59,7 +59,9 @@ def draw(doc, s):
     msp.add_circle((2 * s, 3 * s), 0.25 * s, dxfattribs=wall)
 
     # Files that are no plan, and parts outside of it.
-    msp.add_text("flat", dxfattribs={"layer": "A-ANNO", "height": 0.2 * s}).set_pos((s, s))
+    text = msp.add_text("flat", dxfattribs={"layer": "A-ANNO", "height": 0.2 * s})
+    # Of ezdxf until 1.0, and since.
+    (text.set_pos if hasattr(text, "set_pos") else text.set_placement)((s, s))
     msp.add_linear_dim(base=(0, -s), p1=(0, 0), p2=(8 * s, 0), dxfattribs={"layer": "A-ANNO"}).render()
     hatch = msp.add_hatch(dxfattribs={"layer": "A-ANNO"})
     hatch.paths.add_polyline_path([(0, 0), (s, 0), (s, s)], is_closed=True)

@@ -54,7 +54,15 @@ if python3 keeps.py one.json two.json 2>keeps.err; then fail "self-test: a key t
 envc room.env --info --json >new.json
 keeps info.json new.json
 envc catalogue.env --info --json >new.json
-keeps catalogue.json new.json
+# Its mesh has other triangles, hence another digest, by assimp from 5.3 on.
+version=$(sed -n 's/^ASSIMP_VERSION:INTERNAL=//p' "$binary_dir/CMakeCache.txt")
+case ${version:-none} in
+    5.[0-2].*) keeps catalogue.json new.json ;;
+    *)
+        for file in catalogue.json new.json; do sed 's/"digest":"[^"]*"/"digest":""/' $file >without.$file; done
+        keeps without.catalogue.json without.new.json
+        ;;
+esac
 envc house/house.env --info --json >new.json
 keeps house_info.json new.json
 envc release/room.env --info --json >new.json

@@ -27,7 +27,12 @@ check_limit() {
             grep -qE "error while loading shared libraries|Fatal glibc error: cannot allocate" err ||
                 fail "$command: $(cat err)"
             ;;
-        *) fail "status $status in $1 kB: $command: $(cat err)" ;;
+        *)
+            # TBB 2022 crashes before main begins, so that --version does, too.
+            local early=0
+            (ulimit -v "$1" && exec "${command%% *}" --version) >out 2>err || early=$?
+            [ "$early" -eq "$status" ] || fail "status $status in $1 kB: $command: $(cat err)"
+            ;;
     esac
 }
 

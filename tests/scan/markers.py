@@ -7,10 +7,15 @@ from seen import *
 # long sides of a barrier that stands across the x axis.
 LENGTH, HEIGHT, FACE = 1.2, 0.9, 1.99
 DICTIONARY = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_50)
-BOARD = cv2.aruco.CharucoBoard_create(8, 6, 0.15, 0.11, DICTIONARY)
+IS_OLD = hasattr(cv2.aruco, "CharucoBoard_create")  # until OpenCV 4.6
+if IS_OLD:
+    BOARD = cv2.aruco.CharucoBoard_create(8, 6, 0.15, 0.11, DICTIONARY)
+else:
+    BOARD = cv2.aruco.CharucoBoard((8, 6), 0.15, 0.11, DICTIONARY)
+    BOARD.setLegacyPattern(True)
 K = np.array([[1640, 0, 639.5], [0, 1640, 479.5], [0, 0, 1.0]])
 
-picture = BOARD.draw((1200, 900))
+picture = BOARD.draw((1200, 900)) if IS_OLD else BOARD.generateImage((1200, 900))
 cv2.imwrite("markers.png", np.where(picture > 127, 190, 20).astype(np.uint8))
 write("room.env", "#env 1\nispace size=8,8 height=3\n"
       f"barrier at=2,0 heading=90 size={LENGTH},0.02,{HEIGHT} texture=markers.png\n")
@@ -19,13 +24,19 @@ poses = [look(eye, [2, 0, 0.45], roll) for eye, roll in
          [([0.2, 0.6, 1.1], 12), ([0.3, -0.9, 0.7], 20), ([0.6, 0.9, 0.3], -35), ([0.4, 0.1, 1.3], 70)]]
 for pose, picture in zip(poses, photos("room.env", "camera,pixels=1280,960,fx=1640", poses,
                                        "--samples", "16")):
-    quads, ids, _ = cv2.aruco.detectMarkers(picture, DICTIONARY)
+    if IS_OLD:
+        quads, ids, _ = cv2.aruco.detectMarkers(picture, DICTIONARY)
+    else:
+        quads, ids, _ = cv2.aruco.ArucoDetector(DICTIONARY).detectMarkers(picture)
     if ids is None or len(ids) < 12:
         sys.exit(f"FAILED: {0 if ids is None else len(ids)} of 24 markers found")
-    _, places, squares = cv2.aruco.interpolateCornersCharuco(quads, ids, picture, BOARD)
+    if IS_OLD:
+        _, places, squares = cv2.aruco.interpolateCornersCharuco(quads, ids, picture, BOARD)
+    else:
+        places, squares, _, _ = cv2.aruco.CharucoDetector(BOARD).detectBoard(picture, None, None, quads, ids)
     print(len(ids), "markers,", len(squares), "corners")
     # The board's frame begins at its upper left corner: x to the right, y down.
-    flat = BOARD.chessboardCorners[squares.ravel()].astype(float)
+    flat = (BOARD.chessboardCorners if IS_OLD else BOARD.getChessboardCorners())[squares.ravel()].astype(float)
     points = np.stack([np.full(len(flat), FACE), LENGTH / 2 - flat[:, 0], HEIGHT - flat[:, 1]], 1)
     places = corners(picture, places)
     _, rvec, tvec = cv2.solvePnP(points, places, K, None)

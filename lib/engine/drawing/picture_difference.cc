@@ -8,7 +8,8 @@
 
 namespace ispace {
 
-std::string pictureDifference(const std::string& expected_png, const std::string& actual_png) {
+std::string pictureDifference(const std::string& expected_png, const std::string& actual_png,
+                              double share) {
     const Image expected = decodePng(expected_png);
     const Image actual = decodePng(actual_png);
     if (expected.width != actual.width || expected.height != actual.height)
@@ -28,7 +29,8 @@ std::string pictureDifference(const std::string& expected_png, const std::string
         }
         if (is_other && count++ == 0) first = i;
     }
-    if (count <= expected.pixels.size() / 500) return "";
+    if (static_cast<double>(count) <= share * static_cast<double>(expected.pixels.size()))
+        return "";
     const auto width = static_cast<std::size_t>(expected.width);
     return std::to_string(count) + " pixels, the first at " + std::to_string(first % width) + ", " +
            std::to_string(first / width);

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "base/error.h"
+#include "support/test_pdf.h"
 
 namespace ispace {
 namespace picture_test {
@@ -279,7 +280,7 @@ TEST(Picture, PaperIsToScaleInSvgAndPdf) {
     const std::string svg = sample(PictureFormat::Svg, PageUnit::Millimetre);
     EXPECT_NE(svg.find("width=\"200mm\" height=\"100mm\" viewBox=\"0 0 200 100\""),
               std::string::npos);
-    const std::string pdf = sample(PictureFormat::Pdf, PageUnit::Millimetre);
+    const std::string pdf = objectsOf(sample(PictureFormat::Pdf, PageUnit::Millimetre));
     EXPECT_NE(pdf.find("/MediaBox [ 0 0 566.92"), std::string::npos);  // 200 mm in points
 }
 

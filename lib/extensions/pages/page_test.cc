@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "support/test_pdf.h"
+
 namespace ispace::pages {
 namespace page_test {
 
@@ -131,7 +133,8 @@ TEST(Page, MapTellsTheScriptItsSensors) {
                       "&quot;resolution&quot;:[500,510.3,600]}]}\""));
 }
 
-std::size_t pagesOf(const std::string& pdf) {
+std::size_t pagesOf(const std::string& bytes) {
+    const std::string pdf = objectsOf(bytes);
     std::size_t count = 0;
     for (std::size_t at = pdf.find("/Type /Page %"); at != std::string::npos;
          at = pdf.find("/Type /Page %", at + 1))

@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "support/test_map.h"
+#include "support/test_pdf.h"
 
 namespace ispace {
 namespace map_test {
@@ -152,8 +153,8 @@ TEST(Map, PdfIsAPdfWithoutDate) {
 TEST(Map, PdfIsToScaleOnA4OrA3WhateverTheWidth) {
     const double points = 72 / 25.4, small = std::sqrt(0.5);
     const auto page_of = [](const std::string& room, int width) {
-        const std::string pdf =
-            mapOf(room + "\nlaser at=0,0 heading=30\n", {PictureFormat::Pdf, width, "a room"});
+        const std::string pdf = objectsOf(
+            mapOf(room + "\nlaser at=0,0 heading=30\n", {PictureFormat::Pdf, width, "a room"}));
         const std::string name = "/MediaBox [ 0 0 ";
         const char* text = pdf.c_str() + pdf.find(name) + name.size();
         char* end = nullptr;

@@ -52,7 +52,8 @@ with tempfile.TemporaryDirectory() as folder:
 count = FPS * SECONDS + 1
 check(len(pictures) == len(gif) == len(y4m) == count,
       f"{len(pictures)} PNGs, {len(gif)} and {len(y4m)} pictures, wanted {count}")
-check(abs(gif_rate - FPS) < 0.1 and abs(y4m_rate - FPS) < 0.01, f"{gif_rate}, {y4m_rate} a second")
+# A GIF has whole hundredths of a second, here 12 and 13 in turn; FFmpeg 7 takes the first.
+check(abs(gif_rate - FPS) < 0.5 and abs(y4m_rate - FPS) < 0.01, f"{gif_rate}, {y4m_rate} a second")
 check((pictures[0] != pictures[-1]).any(), "nobody moves")
 for k, (true, of_gif, of_y4m) in enumerate(zip(pictures, gif, y4m)):
     check(true.shape == of_gif.shape == of_y4m.shape, f"picture {k}: {of_gif.shape}")
