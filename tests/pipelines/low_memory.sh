@@ -9,12 +9,18 @@ ulimit -c 0
 
 one_job_of_each_tool
 
+# TBB 2022 crashes or waits for ever if its first allocation fails, some before main begins: its exceptions ask for a
+# setting, whose initialisation is under way. It is killed then.
+tbb=$(sed -n 's/.*define TBB_VERSION_MAJOR //p' /usr/include/oneapi/tbb/version.h 2>/dev/null || true)
+tbb=${tbb:-0} patience=100
+[ "$tbb" -lt 2022 ] || patience=10
+
 # check_limit KILOBYTES JOB EXPECTED
 check_limit() {
     local status=0 command=$2
     rm -f map.png
     # shellcheck disable=SC2086
-    (ulimit -v "$1" && exec $command) >out 2>err || status=$?
+    (ulimit -v "$1" && exec timeout --signal=KILL "$patience" $command) >out 2>err || status=$?
     case $status in
         0)
             [ "$(product)" = "$3" ] || fail "another product in $1 kB: $command"
@@ -27,12 +33,10 @@ check_limit() {
             grep -qE "error while loading shared libraries|Fatal glibc error: cannot allocate" err ||
                 fail "$command: $(cat err)"
             ;;
-        *)
-            # TBB 2022 crashes before main begins, so that --version does, too.
-            local early=0
-            (ulimit -v "$1" && exec "${command%% *}" --version) >out 2>err || early=$?
-            [ "$early" -eq "$status" ] || fail "status $status in $1 kB: $command: $(cat err)"
+        137 | 139)
+            [ "$tbb" -ge 2022 ] || fail "status $status in $1 kB: $command: $(cat err)"
             ;;
+        *) fail "status $status in $1 kB: $command: $(cat err)" ;;
     esac
 }
 
