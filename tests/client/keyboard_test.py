@@ -82,7 +82,10 @@ class Keyboard(unittest.TestCase):
             SOURCE / "tests/data/square.env", SOURCE / "tests/data/session.3dm", clock="real:10", q=True
         )
         self.addCleanup(self.run_.close)
-        master, slave = pty.openpty()
+        try:
+            master, slave = pty.openpty()
+        except OSError as error:  # as in a container without /dev/pts
+            self.skipTest(f"no terminal here: {error}")
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
         self.terminal = master
         self.program = subprocess.Popen(

@@ -59,7 +59,7 @@ version=$(sed -n 's/^ASSIMP_VERSION:INTERNAL=//p' "$binary_dir/CMakeCache.txt")
 case ${version:-none} in
     5.[0-2].*) keeps catalogue.json new.json ;;
     *)
-        for file in catalogue.json new.json; do sed 's/"digest":"[^"]*"/"digest":""/' $file >without.$file; done
+        for file in catalogue.json new.json; do sed 's/"digest":"[^"]*"/"digest":""/g' $file >without.$file; done
         keeps without.catalogue.json without.new.json
         ;;
 esac
