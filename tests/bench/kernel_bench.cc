@@ -137,9 +137,11 @@ void measurePng(benchmark::State& state, const Drawn& drawn) {
     contest.add([&] { benchmark::DoNotOptimize(drawn.encoded()); });
     contest.add([&] { benchmark::DoNotOptimize(pngByDefault(drawn.image)); });
     const auto size = static_cast<double>(ours.size());
-    measure(state, contest, drawn.name, 1e-3,
-            bench::cell(size / 1000, 0, 8) +
-                bench::cell(100 * (size / static_cast<double>(other.size()) - 1), 1, 8) + " %");
+    measure(
+        state, contest, drawn.name, 1e-3,
+        bench::cell(size / 1000, 0, 8) +
+            bench::cell(formatFixed(100 * (size / static_cast<double>(other.size()) - 1), 1) + " %",
+                        10));
 }
 
 void measureDraws(benchmark::State& state, std::size_t function) {
